@@ -1,4 +1,4 @@
-"""`crosscheck animate SCENE`: the exact motion and engines over it, as a picture that moves."""
+"""`crosscheck animate SCENE`: an animation of the exact motion and of the motions of engines."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def animate(
     settings: Settings = None,
     results: Folder = FOLDER,
 ) -> None:
-    """Write a picture that moves: the exact motion, what engines make of it, and how their errors grow."""
+    """Write an animation of the exact motion and of the motions of engines, with their errors over time."""
     if to not in KINDS:
         raise BadInput(f"--to is {to!r}; there are {', '.join(KINDS)}")
     known, chosen = one_scene(scene, settings or ())
@@ -46,7 +46,7 @@ def animate(
     take = take_like(chosen, tuple((method_name(engine), engine, every) for engine in methods))
     motions = tuple(take.motions().values())
     terminal = Terminal(140)
-    with opened(results / STORE) as store:  # those that are not stored are run by the pool first
+    with opened(results / STORE) as store:
         run_interruptible(terminal, store, motions, fresh=False, limit=60.0)
         picture = shown(take, dict(store.answers(motions)))
     for label, why in picture.missing.items():
@@ -57,7 +57,7 @@ def animate(
 
 
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
-    """The engines of these names. Raises BadInput for one that is not known, and for too many."""
+    """The engines with these names. Raises BadInput for an unknown name and for too many names."""
     if words is None:
         return [engine for engine in engines if engine.variant == "default"][:MOST_SHOWN]
     known = {method_name(engine): engine for engine in engines}
@@ -70,7 +70,7 @@ def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engin
 
 
 def _refuse_bad(path: Path, kind: str, force: bool) -> None:
-    """Raises BadInput and FileTrouble, before anything is run, where the picture can't be made or written."""
+    """Raises BadInput or FileTrouble if the picture can't be made or written, before any engine runs."""
     refuse_existing([path], "--output", force)
     if kind == "mp4":
         ffmpeg()

@@ -1,4 +1,4 @@
-"""`crosscheck atlas`: every scene of the failure atlas, step against the parameter that breaks it."""
+"""`crosscheck atlas`: maps of the outcomes of methods over the step and a parameter of a scene."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from reports.pages.atlas.subjects import MAPS
 from reports.run import cluster
 from reports.run.running import run_into
 
-MAP_LIMIT = 600.0  # CPU seconds of one cell, far above any that is known
-STRIDE = 4  # of so many steps one is run, and those between only where a border is; in small maps all
-SMALL = 16  # points along a side
+MAP_LIMIT = 600.0  # CPU seconds of one cell, far above the longest known one
+STRIDE = 4  # every fourth step is run first; steps between two equal outcomes are left out
+SMALL = 16  # points along a side; smaller maps are run completely
 VARIANTS_SHOWN = ("default", "tuned")
-ATLAS = "atlas"  # the folder of the results with the file of its columns
+ATLAS = "atlas"  # the folder in that of the results with the columns of the maps
 
 
 def atlas(
@@ -38,7 +38,7 @@ def atlas(
         bool, typer.Option("--publish", help="Write the file from which the published page is made, too.")
     ] = False,
 ) -> None:
-    """Map where methods fail: step against the parameter that breaks a scene. It is no part of a full run."""
+    """Map where methods fail, over the step and a parameter of the scene. It is no part of a full run."""
     known = {stability_map.name: stability_map for stability_map in MAPS}
     names = tuple(known) if scenes is None else listed("--scenes", [scenes], known)
     if publish:

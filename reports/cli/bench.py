@@ -28,8 +28,8 @@ from reports.versions.catalogue import distributions, engines_named
 from reports.write.provenance import machine, versions
 from reports.write.tables import number
 
-COMPARED = ("mujoco==3.17.0", "mujoco==4.0.1")
-MODEL = Path(__file__).parents[1] / "pages" / "your_model" / "models" / "four_bar.xml"
+COMPARED_RELEASES = ("mujoco==3.17.0", "mujoco==4.0.1")
+TIMED_MODEL = Path(__file__).parents[1] / "pages" / "your_model" / "models" / "four_bar.xml"
 MOST_LINES = 12
 
 
@@ -40,8 +40,8 @@ def bench(
 ) -> None:
     """Time `run` against bare loops; asserts nothing.
 
-    `bench suite [SCENES]`: CPU time of a grid by part, method and scene. `bench judge`: exact multipliers and truths.
-    `bench answers`: whole commands, cold. `bench site`: sizes and times of the site.
+    `bench suite [SCENES]`: CPU time of a grid by part, method and scene. `bench judge`: CPU time of the judge and of
+    exact motions. `bench answers`: whole commands in new processes. `bench site`: sizes and times of the site.
     """
     match scene or []:
         case ["suite", *scenes]:
@@ -99,13 +99,13 @@ def _print_judge() -> None:
 
 
 def _print_commands() -> None:
-    for name, _, release in (word.partition("==") for word in COMPARED):
+    for name, _, release in (word.partition("==") for word in COMPARED_RELEASES):
         installed(distributions(engines_named(name)[0]), release)
     commands = (
         ("--help",),
-        ("check", str(MODEL)),
+        ("check", str(TIMED_MODEL)),
         ("run", "free_four_bar", "--quick"),
-        ("compare", *COMPARED, "--scenes", "free_four_bar"),
+        ("compare", *COMPARED_RELEASES, "--scenes", "free_four_bar"),
     )
     body = []
     for cost in map(measure_command, commands):

@@ -1,4 +1,4 @@
-"""`crosscheck check MODEL`: how wrong a user's own model is at its own settings, and which settings are enough."""
+"""`crosscheck check MODEL`: the error of a user's model with its own settings, and settings that meet a tolerance."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from reports.run import supervisor, worker
 from reports.run.files import temporary_folder, write_whole
 from reports.run.running import worker_count
 
-MAX_WIDTH = 120  # columns at most
-OVERWRITE = "\r\x1b[K"  # on a terminal
+MAX_WIDTH = 120  # columns of the output
+OVERWRITE = "\r\x1b[K"  # erases the current line of a terminal
 # Modules that a check imports. The fork server imports them while this process reads the options and the model.
 EARLY = ("reports.check.document", "reports.check.telling", "numba")
 # Names that `switch_off` of engines/mujoco/reading and engines/pymunk/reading accepts; --help imports neither.
@@ -35,7 +35,7 @@ SWITCHED_OFF = (
     "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "
     "spring, damper, gravity or equality"
 )
-# The refusal where a check gave no answer, by `Outcome`.
+# Outcome -> the sentence about a check without an answer.
 LOSSES = {
     "timed out": "{}; give a larger --limit if that was to be expected",
     "failed": "the check ended with an exception, {}; it comes from a function of the model, or is a defect of ours",
@@ -114,7 +114,7 @@ def check(
 
 
 def _refuse_missed(answers: Answers, is_folder: bool) -> None:
-    """Raises BadInput where nothing could be written, and Broken where a tolerance is missed."""
+    """Raises BadInput if --apply has failed, and Broken if a tolerance is missed."""
     reports = [answer for _, answer in answers if isinstance(answer, CheckReport)]
     for report in reports:
         if report.trouble:
@@ -128,7 +128,7 @@ def _refuse_missed(answers: Answers, is_folder: bool) -> None:
 
 
 def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everything: bool, force: bool) -> None:
-    """Raises BadInput and FileTrouble before anything is run."""
+    """Raises BadInput or FileTrouble for options that can't be met, before a model is run."""
     model = request.word
     if not model:
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")
@@ -142,7 +142,7 @@ def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everyth
             raise BadInput(f"{name} is {str(path)!r}, which is a folder; give a file")
         if name != "--apply" and path.resolve() in sources:
             raise BadInput(f"{name} is {str(path)!r}, which is the model; give another file")
-    if "--apply" in paths:  # reports are written again, as those of pytest are
+    if "--apply" in paths:  # reports replace older ones, like those of pytest
         refuse_existing([paths["--apply"]], "--apply", force)
     if len({path.resolve() for path in paths.values()}) < len(paths):
         raise BadInput(f"{' and '.join(paths)} name one file twice; give each a file of its own")
@@ -152,7 +152,7 @@ def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everyth
 
 
 def _models(model: str) -> list[str]:
-    """The model, or those of a folder. Raises BadInput for a folder without any."""
+    """The model, or the models of a folder. Raises BadInput for a folder without models."""
     if not Path(model).is_dir():
         return [model]
     paths = [str(path) for path in many.find_models(Path(model))]
@@ -162,7 +162,7 @@ def _models(model: str) -> list[str]:
 
 
 def _answers(requests: list[CheckRequest], limit: float) -> Answers:
-    """Each request with its answer, from supervised processes, with progress on stderr. Raises WorkersLost."""
+    """Run the checks in supervised processes, with progress on stderr. Raises WorkersLost."""
     answers: dict[str, CheckReport | Refused] = {}
     with temporary_folder() as aside:
         progress = _Progress(aside / "progress")
@@ -183,7 +183,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
 
 
 class _Progress:
-    """A line that is overwritten on a terminal; one line for each part of the work into a file or a pipe."""
+    """Prints progress: one line that is overwritten on a terminal, or a line for each stage into a file or a pipe."""
 
     def __init__(self, notes: Path) -> None:
         self.notes, self._last, self._begin = notes, "", monotonic()
@@ -205,8 +205,8 @@ class _Progress:
 
 
 def _write(model: str, answers: Answers, files: Mapping[str, Path | None], seconds: float) -> None:
-    """The files that options name. Raises FileTrouble."""
-    from reports.check import rendering  # which takes longer to import than to refuse an option, as below
+    """Write the files of --html, --markdown and --junit. Raises FileTrouble."""
+    from reports.check import rendering  # imported here, so that bad options are refused sooner
     from reports.write.tables import markdown as table
 
     texts, html, markdown, junit = dict[Path, str](), files["html"], files["markdown"], files["junit"]
@@ -230,7 +230,7 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
 
 
 def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> None:
-    """The answer for one model. Raises BadInput without one."""
+    """Print the answer for one model. Raises BadInput if it was refused."""
     from reports.check import rendering
 
     if isinstance(answer, Refused):

@@ -1,4 +1,4 @@
-"""The table of commands, and how one is run: its module is imported when it is called, so that others start soon."""
+"""The table of commands. Only the module of the command that runs is imported, so that commands start quickly."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 from reports.cli.streams import written
 from reports.model.ending import FINE, STATUSES, BadInput
 
-# By the word of each command: the function in `reports.cli`, and the first sentence of its help.
+# Command -> (module and function in `reports.cli`, the first sentence of its help).
 COMMANDS = {
     "list": ("show:list_command", "Scenes, engines and variants, and what is unsupported, with the reason."),
     "run": ("run:run", "Run the cells that are not stored yet; what is done survives an interruption."),
@@ -35,7 +35,7 @@ LOOK: Any = {"add_completion": False, "pretty_exceptions_enable": False, "rich_m
 
 
 def command(name: str) -> Any:
-    """The command of this name, with its options."""
+    """The parser of a command and its options."""
     module, _, function = COMMANDS[name][0].partition(":")
     app = typer.Typer(**LOOK)
     app.command(name)(getattr(import_module(f"reports.cli.{module}"), function))
@@ -56,7 +56,7 @@ def invoke(arguments: Sequence[str]) -> int:
     words = list(arguments) or ["--help"]
     status = FINE
     try:
-        # Not its own `main`: that turns a closed pipe and Ctrl-C into statuses of its own.
+        # typer's own `main` is not called, since it changes the exit status of a closed pipe and of Ctrl-C.
         with written():  # for --help
             if words[0] in COMMANDS:
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
@@ -73,7 +73,7 @@ def invoke(arguments: Sequence[str]) -> int:
 
 
 def _refuse_repeated(parameters: Sequence[Any]) -> None:
-    """Raises BadInput for an option that takes one value and has several: the parser would use the last one alone."""
+    """Raises BadInput for a repeated option that takes one value, of which the parser would use only the last."""
     for parameter in parameters:
         if parameter.param_type_name == "option" and not parameter.multiple and parameters.count(parameter) > 1:
             words = "/".join((*parameter.opts, *parameter.secondary_opts))

@@ -1,4 +1,4 @@
-"""`crosscheck compare`: two versions or builds of an engine against each other; status 1 if the second is worse."""
+"""`crosscheck compare`: the differences between two builds of an engine; status 1 if the second is worse."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from reports.model.quantities import quantity
 from reports.versions.builds import BuildComparison, compare_builds
 from reports.versions.comparison import Difference, RowComparison
 
-LONGEST = 300  # letters of a reason
+LONGEST_REASON = 300  # characters
 
 
 def compare(
@@ -54,18 +54,18 @@ def compare(
         print_comparison(console, result)
         if result.complaint:
             raise Broken(result.complaint)
-        dear = [
+        slower = [
             f"{method} takes {ratio:.2f} times the CPU time"
             for method, ratio in result.comparison.costs.items()
             if cost is not None and ratio > cost
         ]
-        if dear:
+        if slower:
             first, second = (side.label for side in result.sides)
-            raise Broken(f"{second} is dearer than {first}: {', '.join(dear)}, and --cost is {cost:g}")
+            raise Broken(f"{second} is slower than {first}: {', '.join(slower)}, and --cost is {cost:g}")
 
 
 def print_comparison(console: Terminal, builds: BuildComparison) -> None:
-    """A line for each method of each scene, what became worse in full, then orders, cost, and one sentence."""
+    """Print a table with a row for each method of each scene, tables of differences and orders, and a summary."""
     comparison, (first, second) = builds.comparison, (side.label for side in builds.sides)
     lines = sorted(comparison.lines(), key=lambda line: (line.scene, line.method))
     other = tuple(difference for difference in comparison.differences if not difference.worse)
@@ -115,17 +115,17 @@ def print_comparison(console: Terminal, builds: BuildComparison) -> None:
 
 
 def _cells(difference: Difference) -> list[str | float]:
-    """The quantity in its unit, at which step, before and after."""
+    """(quantity and unit, step, value before, value after)."""
     name = difference.quantity
     label = name if name in ("outcome", "reaction_rows") else f"{name} [{quantity(name).unit}]"
     return [label, difference.after.step, difference.value(difference.before), difference.value(difference.after)]
 
 
 def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
-    """For each side the number of cells by the reason of an outcome that the other side does not have."""
+    """For both sides: the reason of a changed outcome -> the number of cells with it."""
 
     def reason(row: Measurement) -> str:
-        sentence = " ".join(row.engine_sentence.split())[:LONGEST]
+        sentence = " ".join(row.engine_sentence.split())[:LONGEST_REASON]
         return "" if Outcome(row.outcome).comparable else ": ".join(filter(None, (row.outcome, sentence)))
 
     ended = [difference for difference in found.differences if difference.quantity == "outcome"]

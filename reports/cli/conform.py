@@ -1,7 +1,7 @@
-"""`crosscheck conform`: whether an engine keeps the contract of `engines`, one line a check.
+"""`crosscheck conform`: checks of the contract of `engines`, with a line for each check.
 
-Checks run in supervised processes, so that one that native code ends, or that hangs, is reported too. An engine
-travels as the words that name it, since not every object that is checked can be pickled: that is one of the checks.
+Checks run in supervised processes, so that a check that crashes or hangs is reported too. A worker gets the name of the
+engine and loads it, since a checked engine may not be picklable; this is one of the checks.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from reports.run.files import temporary_folder
 from reports.run.running import TIME_LIMIT
 from reports.run.supervisor import supervise
 
-MODELS = 20  # that a check may build, where each takes seconds: every mechanism of the checks once
+MODELS = 20  # models that a check may build, about one of each mechanism
 Answers = Sequence[tuple[ConformanceCase, ConformanceResult]]
 
 
@@ -48,7 +48,7 @@ def conform(
             screen.say(name)
             lines = []
             for status, line in verdicts(results):
-                screen.say(f"  {status:<14} {line}")  # as it comes: some checks take seconds
+                screen.say(f"  {status:<14} {line}")  # at once, since some checks take seconds
                 lines.append((status, line))
             count = sum(status == "fails" for status, _ in lines)
             summary = "every check holds" if not count else f"{count} checks fail"
@@ -62,7 +62,7 @@ def conform(
 
 
 def verdicts(results: Iterator[tuple[ConformanceCase, ConformanceResult]]) -> Iterator[tuple[Status, str]]:
-    """The status and the line of every check, and a line for every reason why a check did not apply, once."""
+    """(status, line) of each check, and of each distinct reason why a check did not apply."""
     printed: set[str] = set()
     for check, group in groupby(results, key=lambda pair: pair[0].check):
         answers = list(group)
@@ -85,51 +85,48 @@ def _with_status(answers: Answers, status: str) -> list[tuple[ConformanceCase, C
 
 
 def _places(answers: Answers) -> str:
-    """In which mechanisms, and with which joints."""
+    """The mechanisms with their joints, as the beginning of a sentence."""
     names = [f"{case.world.name} ({', '.join(case.world.kinds)})" for case, _ in answers if case.world is not None]
     return f"in {'; '.join(names)}: " if names else ""
 
 
 @dataclass(frozen=True)
 class Named:
-    """What the command is given: an engine's name or a reference, counted from `folder`; and a variant."""
+    """An engine's name, or a reference relative to `folder`, and a variant."""
 
-    word: str
+    engine: str
     variant: str | None
     folder: str
 
     @staticmethod
-    def here(word: str, variant: str | None) -> Named:
-        return Named(word, variant, os.getcwd())
+    def here(engine: str, variant: str | None) -> Named:
+        return Named(engine, variant, os.getcwd())
 
     def engines(self) -> tuple[Engine, ...]:
-        """Raises BadInput where nothing has this name."""
-        return engines_named(self.word, self.variant, (*ENGINES, *INSTALLED), Path(self.folder))
+        """Raises BadInput if no engine has this name."""
+        return engines_named(self.engine, self.variant, (*ENGINES, *INSTALLED), Path(self.folder))
 
 
 @dataclass(frozen=True)
 class Question:
-    """A check, by its name, of the engine at this place among those that are named.
-
-    `notes`: a folder for a file of the check's name, into which the number of the current mechanism is written.
-    """
+    """A check of one engine, to be run by a worker."""
 
     named: Named
-    place: int
-    check: str
-    notes: str
+    index: int  # of the engine in `named.engines()`
+    check: str  # name of the check
+    notes: str  # a folder; a file with the name of the check has the number of the current mechanism
 
 
 @cache
-def _cases(named: Named, place: int) -> tuple[ConformanceCase, ...]:
-    """Cached in a process, so that checks share the runs of an engine."""
-    return tuple(cases(named.engines()[place]))
+def _cases(named: Named, index: int) -> tuple[ConformanceCase, ...]:
+    """The cases of an engine; the cache makes its checks share their runs."""
+    return tuple(cases(named.engines()[index]))
 
 
 def ask(question: Question) -> tuple[ConformanceResult, ...]:
-    """In a worker: the results of the check, in each of its mechanisms."""
+    """In a worker: the results of the check in each of its mechanisms."""
     results = []
-    for number, case in enumerate(_of_check(_cases(question.named, question.place), question.check)):
+    for number, case in enumerate(_of_check(_cases(question.named, question.index), question.check)):
         Path(question.notes, question.check).write_text(str(number), encoding="utf-8")
         results.append(case.result())
     return tuple(results)
@@ -138,22 +135,21 @@ def ask(question: Question) -> tuple[ConformanceResult, ...]:
 def asked(
     named: Named, limit: float = TIME_LIMIT
 ) -> Iterator[tuple[Engine, Iterator[tuple[ConformanceCase, ConformanceResult]]]]:
-    """Every engine that is named, and the results of its checks, in their order. `limit`: CPU seconds of a check, and
-    more where an engine declares that its models take long to build.
+    """Yield each named engine with the results of its checks in order. Raises BadInput and WorkersLost (`supervise`).
 
-    One worker, so that later checks reuse the runs of earlier ones. Raises BadInput, and WorkersLost (`supervise`).
+    `limit`: CPU seconds of a check without building models. One worker runs all checks, so that they share their runs.
     """
     for number, engine in enumerate(named.engines()):
         yield engine, _answers(named, number, engine, limit + MODELS * engine.build_time)
 
 
 def _answers(
-    named: Named, place: int, engine: Engine, limit: float
+    named: Named, index: int, engine: Engine, limit: float
 ) -> Iterator[tuple[ConformanceCase, ConformanceResult]]:
     every = tuple(cases(engine))
     names = [name for name, _ in groupby(case.check.name for case in every)]
     with temporary_folder() as notes:
-        questions = [Question(named, place, name, str(notes)) for name in names]
+        questions = [Question(named, index, name, str(notes)) for name in names]
         answers: dict[str, Answers] = {}
         for question, results, earlier in supervise(ask, questions, limit, workers=1):
             members = _of_check(every, question.check)
@@ -167,12 +163,12 @@ def _answers(
                 answers[question.check] = [_failed(members[0], sentence)]
             else:
                 answers[question.check] = list(zip(members, results, strict=True))
-            while names and names[0] in answers:  # a check that is tried again is answered late
+            while names and names[0] in answers:  # the answer of a check that is tried again comes after later ones
                 yield from answers[names.pop(0)]
 
 
 def _failed(case: ConformanceCase, words: str) -> tuple[ConformanceCase, ConformanceResult]:
-    return case, ConformanceResult("fails", f"{case.check.name}: {case.check.requirement} {words}")
+    return case, ConformanceResult("fails", f"{case.check.name}: {case.check.asks} {words}")
 
 
 def _of_check(every: Sequence[ConformanceCase], name: str) -> list[ConformanceCase]:

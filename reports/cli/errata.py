@@ -1,4 +1,4 @@
-"""`crosscheck errata`: the chapter's printed slips, each with its three values and the verdict, on the terminal."""
+"""`crosscheck errata`: a table of the misprints in the chapter, each with its three values and the verdict."""
 
 from __future__ import annotations
 

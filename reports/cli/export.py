@@ -1,4 +1,4 @@
-"""`crosscheck export SCENE` and `crosscheck view SCENE`: a scene as a file that runs without us, or to look at."""
+"""`crosscheck export SCENE` writes a scene as a file for an engine; `crosscheck view SCENE` shows it."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from reports.run.files import is_stream, write_whole
 from reports.site.animated import animation, shown
 from reports.site.lessons import take_like
 
-INSTANTS = 10  # of the truth in the comments
-MEMBERS = ("suffix", "write", "commented")
+INSTANTS = 10  # number of instants of the exact motion in the comments
+WRITER_MEMBERS = ("suffix", "write", "commented")  # that every writer must have
 
 SceneName = Annotated[str, typer.Argument(help=f"A scene's name, or {REFERENCES}.")]
 Out = Annotated[Path | None, typer.Option("--out", help="The file; standard output unless given.")]
@@ -74,9 +74,9 @@ def view(
 
 
 def writers() -> dict[str, Any]:
-    """What writes files, by the words of --to: the entry point group `crosscheck.writers`."""
-    lacking = f"it lacks {', '.join(MEMBERS)}"
-    return _registered("writer", lambda value: "" if all(hasattr(value, name) for name in MEMBERS) else lacking)
+    """The writers by the values of --to, from the entry point group `crosscheck.writers`."""
+    lacking = f"it lacks {', '.join(WRITER_MEMBERS)}"
+    return _registered("writer", lambda value: "" if all(hasattr(value, name) for name in WRITER_MEMBERS) else lacking)
 
 
 def _registered(name: str, trouble: Callable[[Any], str]) -> dict[str, Any]:
@@ -84,7 +84,7 @@ def _registered(name: str, trouble: Callable[[Any], str]) -> dict[str, Any]:
 
 
 def truth_lines(scene: Scene) -> list[str]:
-    """The truth at ten instants: poses of all bodies, in the plane of the scene."""
+    """Comment lines with the exact poses of all bodies at INSTANTS instants."""
     mechanism = scene.mechanism()
     times = np.linspace(0.0, scene.duration, INSTANTS)
     x, y = mechanism.gravity
@@ -108,5 +108,5 @@ def _write(path: Path, text: str, force: bool) -> None:
         return
     refuse_existing([path], "--out", force)
     write_whole({path: text}, "give another --out")
-    if not is_stream(path):  # which may be the standard output, where a file would get this line
+    if not is_stream(path):  # the stream may be the standard output, which must contain only the text
         print(visible(f"written: {path}"))

@@ -1,6 +1,6 @@
-"""Ctrl-C, SIGTERM and SIGHUP end the program without a traceback and leave no folder, whatever it is doing.
+"""Ctrl-C, SIGTERM and SIGHUP end the program without a traceback and without temporary folders.
 
-Its status is then 128 and the signal's number, as a shell expects it: 130 after Ctrl-C.
+The exit status is then 128 plus the number of the signal, for example 130 after Ctrl-C.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Interrupted(KeyboardInterrupt):
 
 @contextmanager
 def _handled(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
-    """Inside, the signals call the handler. One that is ignored (a job in the background, nohup) stays ignored."""
+    """A context in which the signals call the handler. Signals that are ignored, as by nohup, stay ignored."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -52,15 +52,16 @@ def _end(number: int, frame: FrameType | None) -> None:
 
 
 def ending_at_once() -> Any:
-    """A context in which a signal ends the process at once; for work that changes no files."""
+    """A context in which a signal ends the process immediately, for work that changes no files."""
     return _handled(_end)
 
 
 @contextmanager
 def delayed_signals() -> Iterator[Callable[[], None]]:
-    """A context that delays signals until its function is called or it ends: either raises Interrupted.
+    """A context that delays a signal until its function `check` is called or the context ends; then Interrupted is
+    raised.
 
-    So work stops only where it can be continued later. The second signal does not wait: it raises at once.
+    So work stops only where it can be continued later. A second signal raises Interrupted immediately.
     """
     pressed: list[int] = []
 

@@ -30,16 +30,12 @@ SLEEPING = 120.0  # s of wall time for a third party's code that does not use it
 
 @dataclass(frozen=True)
 class Reference:
-    """A scene or engine that is not registered, as text that can be stored and loaded again.
-
-    word: a reference (`engines.loading`), or the name of a registered scene. folder: the base of a relative path.
-    settings: the changed numbers of the scene, as they were typed.
-    """
+    """A scene or engine that is not registered, as text that can be stored and loaded again."""
 
     kind: str  # "scene" or "engine"
-    word: str
-    folder: str
-    settings: tuple[tuple[str, str], ...] = ()
+    word: str  # a reference (`engines.loading`), or the name of a registered scene
+    folder: str  # the base of a relative path
+    settings: tuple[tuple[str, str], ...] = ()  # (name, value) of the changed numbers of the scene, as typed
 
     def text(self) -> str:
         return json.dumps([self.kind, self.word, self.folder, self.settings])
@@ -65,15 +61,15 @@ class Reference:
 
 @dataclass(frozen=True)
 class Registry:
-    """Scenes and engines that can be named, and pages of all of them; `given`: the references that added some."""
+    """Scenes and engines that a command can use, and their pages."""
 
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
     pages: tuple[Page, ...]
-    given: tuple[Reference, ...] = ()
+    references: tuple[Reference, ...] = ()  # those that added scenes or engines
 
     def add(self, reference: Reference) -> tuple[Registry, tuple[Any, ...]]:
-        """(the registry with the scenes or engines of the reference, these). Raises ValueError."""
+        """(the registry with the scenes or engines of the reference, these scenes or engines). Raises ValueError."""
         values = reference.values()
         if reference.kind == "engine":
             new = _new(values, self.engines, method_name, reference)
@@ -85,13 +81,13 @@ class Registry:
             more = (engine for engine in self.engines if engine not in registered_engines)
             pages = catalogue.with_scenes(self.pages, new, tuple(dict.fromkeys([*registry.VARIANTS, *more])))
             out = replace(self, scenes=(*self.scenes, *new), pages=pages)
-        return replace(out, given=(*out.given, reference)) if new else out, values
+        return replace(out, references=(*out.references, reference)) if new else out, values
 
 
 def _new(
     values: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], reference: Reference
 ) -> tuple[Any, ...]:
-    """The values with a new name. Raises ValueError for another value with a known name."""
+    """The values whose name is new. Raises ValueError if a different value has the same name."""
     by_name = {name(value): value for value in known}
     new = []
     for value in values:
@@ -105,14 +101,14 @@ def _new(
 
 
 def registered() -> Registry:
-    """The registered scenes, engines and pages. Invalid entry points are left out, with a line each on stderr."""
+    """The registered scenes, engines and pages; a line on stderr reports each invalid entry point."""
     for line in catalogue.TROUBLES:
         said(line)
     return Registry(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
 def with_stored(known: Registry, texts: Iterable[str], motion: bool = False) -> Registry:
-    """The registry with the references of a store. Those that cannot be loaded are left out, a line each on stderr.
+    """The registry with the references of a store; a line on stderr reports each that can't be loaded.
 
     motion: whether the command computes the motion of scenes.
     """
@@ -150,8 +146,8 @@ def choose(
 ) -> Choice:
     """Select scenes and engines, all of them by default. Raises BadInput.
 
-    words: names of scenes or pages, or references. settings: NAME=VALUE for numbers of these scenes. motion: whether
-    the command computes the motion of scenes.
+    words: names of scenes or pages, or references. settings: NAME=VALUE for numbers of these scenes. known: the
+    registered scenes and engines if None. motion: whether the command computes the motion of scenes.
     """
     known = known or registered()
     folder, values = str(Path.cwd()), _settings(settings)
@@ -202,7 +198,7 @@ def engines_named(
 
 
 def _scene_names(known: Registry, word: str) -> list[str]:
-    """The word itself if it is a reference or a scene's name; the scenes' names if it names a page. Raises BadInput."""
+    """The scenes of a page's name; the word itself if it is a reference or a scene's name. Raises BadInput."""
     if is_reference(word) or any(word == scene.name for scene in catalogue.SCENES):
         return [word]
     for page in known.pages:
@@ -212,7 +208,7 @@ def _scene_names(known: Registry, word: str) -> list[str]:
 
 
 def _settings(words: Sequence[str]) -> dict[str, str]:
-    """Numbers to set, by name. Raises BadInput."""
+    """Name -> value, parsed from NAME=VALUE. Raises BadInput."""
     out: dict[str, str] = {}
     for word in words:
         name, _, value = (part.strip() for part in word.partition("="))
@@ -226,15 +222,15 @@ def _settings(words: Sequence[str]) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class ReferenceTrial:
-    """Loads a reference in a worker and makes the calls of a command. motion: also the motion of a scene."""
+    """Loads a reference in a worker and makes the same calls as a command."""
 
-    motion: bool
+    motion: bool  # whether it also computes the motion of a scene
 
     def __call__(self, reference: Reference) -> str:
         """The reason why it cannot be used; empty if it can."""
         try:
             for value in reference.values():
-                # Commands use it as a dictionary's key, compare it, and print it.
+                # Commands need a value that is hashable, equal to itself, and printable.
                 if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
                     raise ValueError("it is not equal to itself")
                 is_scene = isinstance(value, Scene)
@@ -245,7 +241,7 @@ class ReferenceTrial:
                         with suppress(BadInput):  # reported where the cost is needed
                             estimated_cost(Cell(scene, engine, 1))
                 if is_scene and self.motion:
-                    with suppress(ValueError):  # the textbook refuses, which pages can report
+                    with suppress(ValueError):  # a page reports that the exact motion is refused
                         value.motion(np.linspace(0.0, value.duration, value.samples + 1))
         except ValueError as reason:
             return str(reason)
@@ -253,9 +249,9 @@ class ReferenceTrial:
 
 
 def refused(references: Sequence[Reference], motion: bool = False) -> dict[Reference, str]:
-    """The references that cannot be used, each with the reason. Raises WorkersLost.
+    """Reference -> the reason why it can't be used, for those that can't. Raises WorkersLost.
 
-    They are loaded in a worker first, since a third party's code may end its process.
+    A worker loads them first, since code of a third party may end its process.
     """
     if not references or multiprocessing.parent_process() is not None:  # this is a worker
         return {}

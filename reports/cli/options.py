@@ -1,4 +1,4 @@
-"""The options that several commands have, and the folder of the results."""
+"""Options that several commands share, and checks of their values."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ import typer
 from reports.model.ending import BadInput, FileTrouble, nearest
 from reports.run.files import is_stream
 
-# Below the current folder, in the checkout too: no command writes into the published results.
-FOLDER = Path("crosscheck-results")
+FOLDER = Path("crosscheck-results")  # in the current folder, so that only --publish changes published results
 STORE = "cells.sqlite"
-STDOUT = Path("-")  # as a file that is written: standard output
-SEARCH = "search"  # the folder in it with what random mechanisms gave
-SITE = Path("crosscheck-site")  # the folder of a site
+STDOUT = Path("-")  # stands for the standard output
+SEARCH = "search"  # the folder in FOLDER with the results of random mechanisms
+SITE = Path("crosscheck-site")
 REFERENCES = "package.module:NAME, or path/to/file.py"
 
 Folder = Annotated[Path, typer.Option("--results", help="Folder of the stored results, and of the pages.")]
@@ -50,9 +49,9 @@ AsMarkdown = Annotated[bool, typer.Option("--markdown", help="Markdown, as for a
 
 
 def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
-    """Raises FileTrouble for a file that is there, unless it may be replaced. A link counts that leads nowhere.
+    """Raises FileTrouble for an existing file or link, unless `force`.
 
-    A device or a pipe is written into, so that nothing is lost.
+    A device or a pipe is accepted, since it is written to and not replaced.
     """
     for path in paths:
         if not force and (path.is_symlink() or path.exists()) and not is_stream(path):
@@ -60,7 +59,7 @@ def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
 
 
 def listed(option: str, words: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
-    """Known words with commas between them; one that has a comma itself has to be given alone. Raises BadInput."""
+    """The names in `words`, which may be separated by commas; a name may itself contain a comma. Raises BadInput."""
     names = tuple(known)
     found = [name.strip() for word in words for name in ([word] if word in names else word.split(","))]
     out = tuple(dict.fromkeys(filter(None, found)))
@@ -73,12 +72,12 @@ def listed(option: str, words: Iterable[str], known: Iterable[str]) -> tuple[str
 
 
 def refuse_file(results: Path) -> None:
-    """Raises BadInput for a folder of results that is a file, or in one."""
+    """Raises BadInput if the folder of results or one of its parents is a file."""
     for path in (results, *results.parents):
         if path.is_file():
             raise BadInput(f"--results is {str(results)!r}, and {path} is a file; give a folder")
 
 
 def with_folder(command: str, results: Path) -> str:
-    """A command as it is to be typed for this folder of results."""
+    """A command with the --results option that this folder needs."""
     return command if results == FOLDER else f"{command} --results {shlex.quote(str(results))}"

@@ -1,6 +1,6 @@
-"""`crosscheck report`: pages and charts from what is stored, in the folder of the results or published.
+"""`crosscheck report`: writes pages and charts of the stored results.
 
-Pictures are nearly all of the work: where there are many rows, workers render pages, one on each processor.
+Drawing takes most of the time, so that workers render the pages if there are many rows.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from reports.write.templates import without_dead_links
 
 CHECKOUT = Path(__file__).parents[2]
 SEARCHED = ("search.md", "search_errors.svg")
-MANY = 1000  # rows: of fewer, pages are rendered sooner than workers have started
+MANY = 1000  # rows; with fewer rows, starting workers takes longer than rendering
 PAGE_LIMIT = 600.0  # CPU seconds of one page
 Materials = Mapping[Page, Material]
 
@@ -61,7 +61,7 @@ def report(
 
 @dataclass(frozen=True)
 class WrittenReport:
-    """The folder of a report, the names of its files, and sentences about them for the user."""
+    """The folder of a report, the names of its files, and sentences for the user."""
 
     folder: Path
     files: tuple[str, ...]
@@ -69,7 +69,7 @@ class WrittenReport:
 
 
 def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport:
-    """Write pages, charts and tables of the rows stored in `results`. Raises BadInput where there is nothing."""
+    """Write pages, charts and tables of the rows stored in `results`. Raises BadInput if nothing is stored."""
     if publish:
         refuse_outside_a_checkout()
     refuse_file(results)
@@ -82,7 +82,7 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
         write_files({folder / name: text for name, text in searched.items()})
         line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
         return WrittenReport(folder, tuple(searched), (line,))
-    if publish:  # the searches are run by a command of their own: their published pages stay
+    if publish:  # the published pages of searches remain if no searches are stored
         paths = {name: folder / name for name in SEARCHED if (folder / name).is_file()}
         searched = searched or {name: path.read_text(encoding="utf-8") for name, path in paths.items()}
     material, references, left = stored_material(results, publish)
@@ -102,25 +102,25 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
 
 
 def material_of(page: Page, store: Store) -> Material:
-    """All that is stored of a page."""
+    """The stored rows and answers of a page."""
     return Material(store.get(selection.shown_cells(page)), store.answers(all_tasks(page)))
 
 
 def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str, ...], str]:
-    """(what is stored of each page, the references that the store remembers, a sentence on missing cells or "").
+    """(the stored material of each page, the stored references, a sentence on missing cells or "").
 
-    A published report has the pages that are registered, another also those of what else was run.
+    A published report has the registered pages; another one also has pages of the stored references.
     """
     with Store.read(results / STORE) as store:
         references = () if publish else tuple(store.load_references())
         pages = with_stored(registered(), references, motion=True).pages
-        # A borrowed cell belongs to the full grid as far as the page that it is borrowed from runs it.
+        # A borrowed cell is counted on the page that runs it.
         items = [(*selection.page_cells(page), *selection.page_tasks(page)) for page in catalogue.PAGES]
         whole = tuple(dict.fromkeys(item for members in items for item in members))
         left = len(missing(whole, store))
         material = {page: material_of(page, store) for page in pages}
     names = {page.name for page in catalogue.PAGES}
-    # A page of which nothing is stored has nothing to show: it was not run, or its sources have changed since.
+    # Pages without stored results are left out: they were not run, or their sources have changed since.
     material = {
         page: stored
         for page, stored in material.items()
@@ -131,9 +131,10 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
 
 
 def publishable(material: Materials, left: str) -> Materials:
-    """The material, with published digits of rows that are as before. Raises BadInput if it may not be published.
+    """The material, with the published digits of unchanged rows.
 
-    Rows of an engine that is not installed would be lost.
+    Raises BadInput if cells are missing, if rows contradict a claim of a page, or if an engine of a published row is
+    not installed, since its rows would be lost.
     """
     before = read_published(published())
     if absent := [registry.ABSENT[engine] for engine in before.engines if engine in registry.ABSENT]:
@@ -149,7 +150,7 @@ def publishable(material: Materials, left: str) -> Materials:
 def rendered(
     folder: Path, material: Materials, references: tuple[str, ...], searched: Mapping[str, str], publish: bool
 ) -> dict[str, str]:
-    """The files of a report into this folder by their names, but for their digests."""
+    """Name -> text of the files of a report in this folder, without the file of digests."""
     command = "make publish" if publish else "crosscheck report"
     many = sum(len(stored.rows) for stored in material.values()) > MANY
     pages = drawn(material, references, command, published()) if many else {}
@@ -159,7 +160,7 @@ def rendered(
         timings = published() / "timings.csv"
         if timings.is_file() and "timings.csv" in files:
             old = timings.read_text(encoding="utf-8")
-            same = old.partition("\n")[2] == files["timings.csv"].partition("\n")[2]  # but for the date
+            same = old.partition("\n")[2] == files["timings.csv"].partition("\n")[2]  # without the line of the date
             files["timings.csv"] = old if same else files["timings.csv"]
         return files
 
@@ -171,15 +172,15 @@ def rendered(
 
 @dataclass(frozen=True)
 class Drawing:
-    """Draws a page in a worker from (its name, its stored material). words: references that the store remembers."""
+    """Draws a page in a worker from (its name, its stored material)."""
 
-    words: tuple[str, ...]
+    references: tuple[str, ...]  # the stored references
     command: str
 
     def __call__(self, item: tuple[str, Material]) -> dict[str, str]:
         name, material = item
-        page = _pages(self.words)[name]  # it holds functions, which can't be sent
-        gc.disable()  # it would look through all that was imported; what one page leaves is little
+        page = _pages(self.references)[name]  # a page has functions, which can't be pickled
+        gc.disable()  # it would traverse all imported objects, while one page leaves little garbage
         try:
             return rendering.render_page(page, material, self.command)
         finally:
@@ -188,16 +189,16 @@ class Drawing:
 
 
 @lru_cache(maxsize=1)
-def _pages(words: tuple[str, ...]) -> dict[str, Page]:
-    pages = {page.name: page for page in with_stored(registered(), words).pages}
+def _pages(references: tuple[str, ...]) -> dict[str, Page]:
+    pages = {page.name: page for page in with_stored(registered(), references).pages}
     gc.freeze()
     return pages
 
 
-def drawn(material: Materials, words: Iterable[str], command: str, order: Path) -> dict[str, dict[str, str]]:
-    """The files of the pages that a worker could render, by the pages' names; the caller renders the others.
+def drawn(material: Materials, references: Iterable[str], command: str, order: Path) -> dict[str, dict[str, str]]:
+    """Page -> its files, for the pages that workers could render; the caller renders the others.
 
-    words: references that the store remembers; order: a folder with a report: pages with the largest pictures begin.
+    references: those of the store; order: a folder with a report, whose largest pictures are drawn first.
     """
 
     def size(pair: tuple[str, Material]) -> int:
@@ -206,14 +207,14 @@ def drawn(material: Materials, words: Iterable[str], command: str, order: Path) 
     pages = sorted(((page.name, stored) for page, stored in material.items()), key=size, reverse=True)
     files: dict[str, dict[str, str]] = {}
     with suppress(WorkersLost):
-        for (name, _), result, _ in supervise(Drawing(tuple(words), command), pages, PAGE_LIMIT, worker_count()):
+        for (name, _), result, _ in supervise(Drawing(tuple(references), command), pages, PAGE_LIMIT, worker_count()):
             if not isinstance(result, Loss):
                 files[name] = result
     return files
 
 
 def moving_picture(material: Iterable[Material]) -> dict[str, str]:
-    """The moving picture of README, by its name; nothing where not all of its motions are stored."""
+    """Name -> text of the animation in README; empty unless all of its motions are stored."""
     answers = {task: answer for stored in material for task, answer in stored.answers.items() if task in MOVING_TASKS}
     if any(task not in answers for task in MOVING_TASKS):
         return {}
@@ -224,8 +225,8 @@ def moving_picture(material: Iterable[Material]) -> dict[str, str]:
 
 
 def write_files(texts: Mapping[Path, str], line: str = "") -> None:
-    """Write them whole or not at all, and print a line about it, if there is one."""
-    with delayed_signals() as check:  # between two files is no place to stop
+    """Write all files or none, then print `line` unless it is empty."""
+    with delayed_signals() as check:  # an interruption between two files would leave a mixed report
         write_whole(texts, "the pages that were there stay as they were")
         check()
     if line:
@@ -233,7 +234,7 @@ def write_files(texts: Mapping[Path, str], line: str = "") -> None:
 
 
 def search_files(results: Path, publish: bool = False) -> dict[str, str]:
-    """The page of the stored searches, and its picture; to be published, those of the last commit's seeds alone."""
+    """The page of the stored searches and its picture; for publishing, only those with the seeds of the last commit."""
     if not (results / SEARCH / STORE).exists():
         return {}
     planned = sum(piece.count for piece in plan.published_chunks()) if publish else 0
@@ -249,7 +250,7 @@ def published() -> Path:
 
 
 def refuse_outside_a_checkout() -> None:
-    """Raises BadInput unless the package lies in a checkout: an installed copy has no README to write."""
+    """Raises BadInput unless the package is in a checkout, since an installed copy has no README."""
     for path in (CHECKOUT / "README.md", published() / "index.md"):
         if not path.is_file():
             raise BadInput(f"--publish is for a checkout of the project; there is no {path}")

@@ -1,4 +1,4 @@
-"""`crosscheck run`: the cells that are not stored yet, with a bar of progress, or a line now and then into a file."""
+"""`crosscheck run`: runs the cells that are not stored yet and shows the progress."""
 
 from __future__ import annotations
 
@@ -39,11 +39,9 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Task
 from reports.run import cluster
-from reports.run.running import run_into
+from reports.run.running import TIME_LIMIT, run_into
 from reports.run.store import Store
 from reports.write.tables import SUMMARY_HEADER, summary_rows
-
-LIMIT = 60.0  # CPU seconds of a cell
 
 
 def run(
@@ -55,7 +53,7 @@ def run(
     fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
     every: Every = None,
     step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
-    limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = LIMIT,
+    limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = TIME_LIMIT,
     workers: Workers = None,
     scheduler: Scheduler = None,
     as_json: AsJson = False,
@@ -85,20 +83,16 @@ def run(
 
 @dataclass(frozen=True)
 class Selection:
-    """The options of `crosscheck run` and `planar_crosscheck.run` that choose cells; each property raises BadInput.
+    """The options of `crosscheck run` and `planar_crosscheck.run` that choose cells; each property raises BadInput."""
 
-    scenes: names of scenes or pages, or references, all if empty; settings: "NAME=VALUE" for numbers of the scenes;
-    every: steps between samples, steps [s]: of these alone; limit: CPU seconds of a cell.
-    """
-
-    scenes: tuple[str, ...] = ()
+    scenes: tuple[str, ...] = ()  # names of scenes or pages, or references; all if empty
     engine: str | None = None
     variant: str | None = None
-    settings: tuple[str, ...] = ()
+    settings: tuple[str, ...] = ()  # "NAME=VALUE" for numbers of the scenes
     full: bool = False
-    every: tuple[int, ...] = ()
-    steps: tuple[float, ...] = ()
-    limit: float = LIMIT
+    every: tuple[int, ...] = ()  # only these numbers of steps between samples
+    steps: tuple[float, ...] = ()  # only these steps [s]
+    limit: float = TIME_LIMIT  # CPU seconds of a cell
 
     def __post_init__(self) -> None:
         if not 0 < self.limit < float("inf"):
@@ -110,8 +104,8 @@ class Selection:
 
     @property
     def references(self) -> list[str]:
-        """Texts by which a store finds unregistered scenes and engines again."""
-        return [reference.text() for reference in self.choice.known.given]
+        """The selected references as texts for a store."""
+        return [reference.text() for reference in self.choice.known.references]
 
     @property
     def _alone(self) -> bool:
@@ -119,14 +113,13 @@ class Selection:
 
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
-        """The cells that are run."""
         scenes, engines, pages = self.choice.scenes, self.choice.engines, self.choice.known.pages
         named = self.engine is not None
         return choose_cells(scenes, engines, pages, self.full, self.every, self.steps, named=named, alone=self._alone)
 
     @cached_property
     def items(self) -> Sequence[Cell | Task]:
-        """The cells, and the tasks of pages: not where steps are named, nor in a quick run of scenes that are named."""
+        """The cells, and the tasks of pages unless steps are selected or named scenes are run quickly."""
         known, scenes = self.choice.known, self.choice.scenes
         only_cells = self.every or self.steps or self._alone
         tasks = () if only_cells else choose_tasks(scenes, self.choice.engines, known.pages, self.full)
@@ -139,7 +132,7 @@ class Selection:
 
     @property
     def left_out(self) -> list[tuple[Cell, str]]:
-        """Cells of the grid of an engine that was named which are not run, with the reason."""
+        """(cell, reason) of the cells in the grid of a named engine that are not run."""
         if self.engine is None or self.every or self.steps:
             return []
         pages = self.choice.known.pages
@@ -149,7 +142,7 @@ class Selection:
 def run_grid(
     chosen: Selection, results: Path = FOLDER, workers: int | None = None, fresh: bool = False
 ) -> list[Measurement]:
-    """The rows of these cells; those that are not stored in the folder `results` are run. Raises BadInput."""
+    """The rows of the selected cells; cells that are not stored in `results` are run. Raises BadInput."""
     by = cluster.pool(workers)
     with Store(results / STORE) as store:
         store.save_references(chosen.references)
@@ -160,7 +153,7 @@ def run_grid(
 
 
 def refuse_without_motion(rows: Sequence[Measurement]) -> None:
-    """Raises BadInput if the numbers of the scenes were refused in every cell."""
+    """Raises BadInput if every cell was refused, since the numbers of the scenes are invalid."""
     if rows and all(row.outcome == Outcome.REFUSED for row in rows):
         raise BadInput(rows[0].sentence)
 
@@ -173,7 +166,7 @@ def run_interruptible(
     limit: float,
     crew: cluster.Workforce | None = None,
 ) -> int:
-    """Run cells and tasks with a bar of progress, by `crew` or all processors; how many were run.
+    """Run cells and tasks on `crew`, or on all processors, and show the progress; return the number of items run.
 
     Raises KeyboardInterrupt after a line about the stored rows.
     """
@@ -185,13 +178,13 @@ def run_interruptible(
 
 
 def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:
-    """Raises Broken where no cell gave anything: each failed, was aborted or ran out of time."""
+    """Raises Broken if every cell failed, was aborted or timed out."""
     if rows and all(Outcome(row.outcome).grade == 3 for row in rows):
         raise Broken(f"none of {len(rows)} cells gave a motion; the first {rows[0].outcome}: {rows[0].sentence}")
 
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:
-    """A table a scene, a line a method; then the outcomes of the experiments outside the sweeps."""
+    """Print a table for each scene with a row for each method, and the outcomes of cells outside the sweeps."""
     judged_rows = judged(rows)
     console.keep(judged_rows)
     for scene in dict.fromkeys(row.scene for row in judged_rows if row.purpose == "sweep"):

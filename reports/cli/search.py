@@ -1,4 +1,4 @@
-"""`crosscheck search`: random mechanisms in engines, held against the law, other descriptions and the judge."""
+"""`crosscheck search`: tests of engines on random mechanisms, by physical laws, other descriptions and the judge."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from reports.search.run import DEFAULT_CASES, Search
 from reports.search.shrinking import files_of, line_of
 from reports.search.subjects import Adapted, Alone, Subject
 
-TEN = 10  # cases of a fresh seed for each engine
+FRESH_CASES = 10  # of each engine for a fresh seed
 USUAL = ",".join(DEFAULT_ORACLES)
 FURTHER = ",".join(name for name in ORACLES if name not in DEFAULT_ORACLES)
 Seed = Annotated[
@@ -83,7 +83,7 @@ def search(
     subjects = [subject for subject in subjects if {*wanted} & {*subject.kinds, *SINGULAR_KINDS}]
     names = listed("--oracles", [oracles], tuple(ORACLES))
     if fresh:
-        batches = plan.fresh_chunks(subjects, cases or TEN)
+        batches = plan.fresh_chunks(subjects, cases or FRESH_CASES)
     elif published:
         batches = iter([plan.published_chunks()])
     else:
@@ -123,7 +123,7 @@ def _refuse(seconds: float | None, seed: int | None, fresh: bool, published: boo
 def chosen_subjects(
     engine: str | None, variant: str | None, release: str | None = None, everything: bool = False
 ) -> list[Subject]:
-    """The engines of these names, and MuJoCo alone; all variants if none is named. Raises BadInput."""
+    """The engines of this name and variant, and MuJoCo without our adapter if it is selected. Raises BadInput."""
     if release is not None:
         if engine not in (None, "mujoco") or variant not in (None, "alone"):
             raise BadInput(f"--release is {release!r}, which is MuJoCo's alone; leave out --engine and --variant")
@@ -139,7 +139,7 @@ def chosen_subjects(
 
 
 def _shrink_and_write(terminal: Terminal, run: Search, found: list[CaseResult], folder: Path) -> None:
-    """Make some findings of each check smaller, and write them as recipes and scripts."""
+    """Shrink some findings of each check, and write them as recipes and scripts."""
     if not any(case.result.faults for case in found):
         terminal.tell("Nothing was found.")
         return

@@ -1,4 +1,4 @@
-"""The scenes, engines and cells that a command line selects; an unknown name is refused with the nearest known one."""
+"""The scenes, engines, cells and tasks that a command line selects; errors suggest the nearest known name."""
 
 from __future__ import annotations
 
@@ -14,15 +14,14 @@ from reports.model.ending import BadInput, nearest
 from reports.model.page import Page
 from reports.model.tasks import Task
 
-# A quick run over everything takes about twenty seconds of two cores. For that no cell of it takes longer than
-# QUICK_SECONDS, but for the shortest of each method in each scene: that one is left out only beyond QUICK_CELL, as
-# tasks and cells of many versions are. By the formulas of engines and tasks alone [s].
-QUICK_SECONDS = 0.02
-QUICK_CELL = 0.1
+# A quick run of everything takes about twenty seconds on two cores. The limits apply to times by the formulas of
+# engines and tasks. Only the shortest cell of each method in each scene may take longer than QUICK_SECONDS.
+QUICK_SECONDS = 0.02  # s
+QUICK_CELL = 0.1  # s; limit of the shortest cell, of tasks, and of cells in `crosscheck versions`
 
 
 def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence[Page]) -> tuple[Scene, ...]:
-    """The scenes of these names, or of the pages of these names; all of them for no word. Raises BadInput."""
+    """The scenes with these names or on pages with these names; all scenes without names. Raises BadInput."""
     if not words:
         return tuple(scenes)
     taught = {scene: [page.name for page in pages if page.teaches(scene)] for scene in scenes}
@@ -36,7 +35,7 @@ def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence
 
 
 def choose_engines(engine: str | None, variant: str | None, engines: Sequence[Engine]) -> tuple[Engine, ...]:
-    """The engines of this name and variant; None takes all. Raises BadInput."""
+    """The engines with this name and this variant; None selects all. Raises BadInput."""
     from engines.registry import ABSENT
 
     if engine in ABSENT:
@@ -52,14 +51,14 @@ def choose_engines(engine: str | None, variant: str | None, engines: Sequence[En
 
 
 def steps_per_sample(scene: Scene, step: float) -> int:
-    """How many steps [s] fit between two samples of a scene. Raises BadInput unless it is a whole number."""
+    """The number of steps of `step` [s] between two samples of a scene. Raises BadInput unless it is an integer."""
     if not (math.isfinite(step) and step > 0):
         raise BadInput(f"step is {step!r} s; it must be a finite time greater than zero")
     ratio = scene.spacing / step
     if not ratio <= LARGEST_COUNT:
         raise BadInput(f"step is {step:g} s: {scene.name} would take {ratio:.3g} steps between two samples")
     every = max(1, round(ratio))
-    # 1e-9: a step typed with ten digits or more is meant to divide.
+    # 1e-9: a step that is typed with ten digits counts as a divisor.
     if abs(ratio - every) > 1e-9 * ratio:
         raise BadInput(
             f"step {step:g} s does not divide the {scene.spacing:.10g} s between samples of {scene.name}; "
@@ -69,7 +68,7 @@ def steps_per_sample(scene: Scene, step: float) -> int:
 
 
 def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
-    """Every engine that can be named: the registry's, those of a page's grid, those of its experiments."""
+    """All installed engines: those of the registry, and those of the grids, experiments and tasks of pages."""
     from engines.registry import ENGINES, INSTALLED
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
@@ -79,7 +78,7 @@ def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
-    """The engines that the scene's page compares; for a scene without a page the variants of all scenes."""
+    """The engines that the scene's page compares; for a scene without a page those in VARIANTS."""
     from engines.registry import VARIANTS
 
     compared = next((page.engines_of(scene) for page in pages if page.teaches(scene)), VARIANTS)
@@ -87,7 +86,7 @@ def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page])
 
 
 def _beside(engines: Sequence[Engine]) -> tuple[Engine, ...]:
-    """The engines among these that are extras."""
+    """The engines among these that are not in the grid."""
     from engines.registry import OTHERS
 
     return tuple(engine for engine in engines if engine in OTHERS)
@@ -103,12 +102,11 @@ def choose_cells(
     named: bool = False,
     alone: bool = False,
 ) -> tuple[Cell, ...]:
-    """The cells of a run: the grid, with the failures of the pages that teach these scenes; the steps that people
-    use too if full.
+    """The cells of a run: the grid of these scenes, and the experiments of their pages. Raises BadInput for bad steps.
 
-    A quick run leaves out what would take long (`_quick`), but for the shortest cell of an engine that was `named` in a
-    scene; with `alone`, experiments in other scenes too. `every` or `steps` replace the grid by these steps
-    alone. Raises BadInput for steps that can't be.
+    full: all steps, also the usual ones of users; otherwise `_quick` leaves out long cells. every, steps: these steps
+    replace the grid. named: a quick run has the shortest cell of each scene even if it is long. alone: a quick run has
+    no experiments in other scenes.
     """
     if every or steps:
         chosen: dict[Cell, None] = {}
@@ -137,7 +135,7 @@ def choose_cells(
 def left_out(
     scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool, chosen: Sequence[Cell]
 ) -> list[tuple[Cell, str]]:
-    """The cells of the grid that are not among those chosen by `choose_cells`, each with the reason."""
+    """(cell, reason) of the cells in the grid that `choose_cells` has left out."""
     remaining, quick = set(chosen), f"and a quick run has {QUICK_SECONDS:g} s for a run"
     return [
         (cell, too_much(cell) or f"step_cost says {estimated_seconds(cell):.4g} s, {quick}")
@@ -151,9 +149,9 @@ def left_out(
 def choose_tasks(
     scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool
 ) -> tuple[Task, ...]:
-    """The tasks of the pages that are run with these scenes, of these engines or of none.
+    """The tasks of the pages that are run with these scenes, without those of other engines.
 
-    A quick run leaves out what would take longer than QUICK_CELL.
+    A quick run leaves out tasks that take longer than QUICK_CELL.
     """
     tasks = (
         task
@@ -166,9 +164,10 @@ def choose_tasks(
 
 
 def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
-    """Those for which a quick run has the time: of an engine beside the grid one step, the finest that is short.
+    """The cells of a quick run: the short ones, and the shortest of each method unless it takes longer than `most` [s].
 
-    Seconds are those of the engines' own formulas, so that the choice is the same everywhere, whatever was measured.
+    Of an engine beside the grid only the short cell with the smallest step is run. The times are those of the engines'
+    formulas, so that the choice does not depend on the machine.
     """
     groups: dict[tuple[Scene, Engine, str], list[Cell]] = {}
     for cell in cells:
@@ -183,7 +182,7 @@ def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
 
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
-    """All cells of a page, without those that it borrows from other pages."""
+    """All cells of a page, without borrowed ones and without those of engines that are not installed."""
     from engines.registry import INSTALLED
 
     cells: list[Cell] = []
@@ -200,7 +199,7 @@ def page_tasks(page: Page) -> tuple[Task, ...]:
 
 
 def shown_cells(page: Page) -> tuple[Cell, ...]:
-    """All cells whose rows a page can print: its own, those of engines that are not installed, and borrowed ones."""
+    """All cells whose rows a page can show, also borrowed ones and those of engines that are not installed."""
     from engines.registry import OTHERS
 
     other_cells = (*beside_cells(page.scenes, OTHERS), *page.extra_cells())

@@ -1,4 +1,4 @@
-"""`crosscheck shapes MOTION.csv`: any motion as two shapes that generate it by rolling, written to files."""
+"""`crosscheck shapes MOTION.csv`: writes two shapes that generate a motion when one rolls on the other."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from reports.pages.centrodes.page import returned
 from reports.run.files import write_whole
 
 WRITERS = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
-USUAL = ("csv", "svg")  # dxf needs a package that an installation has only with the extra `dxf`
-MOST_POINTS = 1_000_000  # far more than a workshop can cut, far less than memory can hold
-MOST_BYTES = 2**27  # of the table of poses, a hundred for each of a million
-COARSE = 1e-3  # of the shapes' size: above this the table is too coarse for the motion, and the user must know
+DEFAULT_KINDS = ("csv", "svg")  # without dxf, which needs the extra `dxf`
+MOST_POINTS = 1_000_000  # more than a workshop can cut, and less than memory can hold
+MOST_BYTES = 2**27  # of the table of poses: about a hundred for each of a million poses
+COARSE = 1e-3  # relative error of the shapes above which the user is told that the table has too few poses
 
 
 def shapes(
@@ -37,7 +37,7 @@ def shapes(
 
     They are the curves of the instant centre of the poses in MOTION.csv (its centrodes), in space and in the body.
     """
-    kinds = dict.fromkeys(kind or USUAL)
+    kinds = dict.fromkeys(kind or DEFAULT_KINDS)
     if unknown := [word for word in kinds if word not in WRITERS]:
         raise BadInput(f"--kind is {unknown[0]!r}; there are {', '.join(WRITERS)}")
     if "dxf" in kinds and find_spec("ezdxf") is None:
@@ -62,7 +62,7 @@ def shapes(
 
 
 def _describe(curves: Centrodes, pair: Shapes) -> list[str]:
-    """Sentences about the shapes before they are cut: their length, their error, and whether they return the motion."""
+    """Sentences about the length of the shapes, their error, and the motion when one rolls on the other."""
     size = float(np.ptp(np.vstack([pair.space, pair.body]), axis=0).max())
     lines = [
         f"{len(curves.theta)} poses over {np.ptp(curves.theta):.4g} rad; both shapes are "
@@ -81,7 +81,7 @@ def _describe(curves: Centrodes, pair: Shapes) -> list[str]:
 
 
 def _read_text(path: Path) -> str:
-    """A file's text. Raises FileTrouble with the reason why it can't be read."""
+    """The text of a file. Raises FileTrouble."""
     try:
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)

@@ -1,4 +1,4 @@
-"""`crosscheck list` and `crosscheck show`: what there is to run, and a scene's stored numbers, on the terminal."""
+"""`crosscheck list` prints the scenes and engines; `crosscheck show` prints the stored numbers of a scene."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
     print_table(terminal, "Engines", ["engine", "variant", "settings"], rows, 3)
     terminal.print()
     reasons = support([Cell(listed, method, 1) for listed in scenes for method in engines])
-    # Sorted: workers answer in any order.
+    # Sorted, since the order of the workers' answers varies.
     rows = sorted((cell.scene.name, method_name(cell.engine), reason) for cell, reason in reasons.items() if reason)
     if rows:
         print_table(terminal, "Unsupported", ["scene", "method", "why"], rows, 3)
@@ -96,7 +96,7 @@ def show(
 
 
 def _print_scene(terminal: Terminal, scene: Scene, rows: Mapping[Cell, Measurement], quantity: str) -> None:
-    """Every run of a scene, order and plateau, and the settings that are enough for errors of this quantity."""
+    """Print all runs of a scene, their orders and plateaus, and the sufficient settings for this quantity."""
     grid = [row for cell, row in rows.items() if cell.scene == scene and cell.purpose in ("sweep", "usual")]
     beside = [row for cell, row in rows.items() if cell.scene == scene and cell.purpose == "beside"]
     judged_rows = judged(grid, quantity)

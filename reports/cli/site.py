@@ -1,4 +1,4 @@
-"""`crosscheck site`: the results as a static site, with motions that are run for it if they are not stored."""
+"""`crosscheck site`: writes the results as a static site; motions of lessons that are not stored are run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from reports.site.lesson import SiteSource
 from reports.site.packages import npm_trouble
 from reports.write.provenance import versions
 
-CACHE = "npm"  # the folder in that of the results with the packages that were fetched
+NPM_CACHE = "npm"  # the folder in that of the results with downloaded packages
 
 
 def site(
@@ -52,12 +52,12 @@ def site(
     source = SiteSource(
         **texts_of(folder),
         answers={},
-        cache=results / CACHE,
+        cache=results / NPM_CACHE,
         foot=f"Made by crosscheck site with {versions(())}.".replace("`", ""),
         contributing=_of_checkout("CONTRIBUTING.md"),
         lecture=_of_checkout("lecture.ipynb"),
     )
-    if trouble := npm_trouble(source.cache):  # at once, for the rest takes a while
+    if trouble := npm_trouble(source.cache):  # printed now, since building the site takes a while
         said(f"parts of the site will be missing: {trouble}")
     source.answers = _answers(terminal, results)
     files = build(source)
@@ -75,7 +75,7 @@ def site(
 
 
 def texts_of(folder: Path) -> dict[str, Any]:
-    """The texts of a folder of results, as fields of `SiteSource`."""
+    """The texts in a folder of results, as keyword arguments of `SiteSource`."""
 
     def texts(*patterns: str) -> dict[str, str]:
         paths = [path for pattern in patterns for path in sorted(folder.glob(pattern))]
@@ -91,7 +91,7 @@ def _of_checkout(name: str) -> str:
 
 
 def _answers(terminal: Terminal, results: Path) -> dict[Motion, Answer]:
-    """The motions of the lessons; those that are not stored are run by the pool first."""
+    """The motions of the lessons; those that are not stored are run first."""
     wanted = tasks()
     with opened(results / STORE) as store:
         run_interruptible(terminal, store, wanted, fresh=False, limit=60.0)

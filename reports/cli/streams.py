@@ -1,4 +1,4 @@
-"""Standard streams: opened where they are closed, written without a traceback, left without a complaint."""
+"""Standard streams: opened if they are closed, written without a traceback, and closed without an error message."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reports.model.ending import FileTrouble, visible
 
 @contextmanager
 def written() -> Iterator[None]:
-    """Raises FileTrouble where standard output can't be written inside, and BrokenPipeError if its reader has ended."""
+    """A context for writing to the standard output: raises FileTrouble, or BrokenPipeError if the reader has ended."""
     try:
         yield
         sys.stdout.flush()
@@ -24,22 +24,22 @@ def written() -> Iterator[None]:
 
 
 def said(words: str) -> None:
-    """A line on standard error, at once."""
+    """Print a line on the standard error at once."""
     print(f"crosscheck: {visible(words)}", file=sys.stderr, flush=True)
 
 
 def open_streams() -> None:
-    """Give streams that are closed the null device, lest a file that is opened take their number, and be written."""
+    """Open closed streams on the null device, so that no other file gets their number and their output."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 (it stays open)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # names of files, and signs that the locale lacks
+            stream.reconfigure(errors="backslashreplace")  # for characters that the locale lacks
 
 
 def leave_streams() -> None:
-    """What could not be written is dropped; Python would try again on its way out, and complain."""
+    """Drop output that can't be written, since Python would print an error message about it at its end."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -26,15 +26,15 @@ from reports.run.store import Store
 from reports.write.tables import display_width, markdown, text_table, words_of
 from reports.write.templates import inert
 
-PULSE = 10.0  # s between two lines about a run whose output is a file or a pipe
+PULSE = 10.0  # s between two lines of progress into a file or a pipe
 
 
 class Terminal(Console):
-    """Standard output: as wide as the terminal; a table into a file or a pipe keeps its width, whatever the terminal's.
+    """The standard output, with the width of the terminal, or of `width` columns into a file or a pipe.
 
-    `form`: "text"; "markdown", for a comment; or "json", one document at the end (`telling`). In the last two only
-    the output of `tell` and `print_table` goes to standard output; other output, such as progress, to standard error.
-    `print` raises BrokenPipeError if its reader has ended, and FileTrouble where it can't be written.
+    `form` is "text", "markdown" or "json", which is one document at the end (`telling`). With the last two, only the
+    output of `tell` and `print_table` goes to standard output, and other output, such as progress, to standard error.
+    `print` raises the errors of `written`.
     """
 
     def __init__(self, width: int, form: str = "text") -> None:
@@ -47,7 +47,7 @@ class Terminal(Console):
             super().print(*objects, **options)
 
     def say(self, sentence: str) -> None:
-        """Print a sentence that is no part of the results, without markup: names of files may contain brackets."""
+        """Print a sentence that is not a result, without markup, since names of files may contain brackets."""
         self.print(visible(sentence), markup=False, highlight=False, soft_wrap=True)
 
     def tell(self, sentence: str) -> None:
@@ -61,13 +61,13 @@ class Terminal(Console):
             self.say(sentence)
 
     def close(self, status: int, message: str = "") -> None:
-        """Print the document, if that is the form."""
+        """Print the JSON document, if that is the form."""
         if self.form == "json":
             with written():
                 print(json.dumps(self.document | {"status": status, "message": message}, indent=1))
 
     def keep(self, rows: Iterable[Measurement]) -> None:
-        """Rows with all their digits, for the document alone: `rows`, an object each, by the names of `errors.csv`."""
+        """Add rows with all digits to the JSON document; their keys are the column names of `errors.csv`."""
         if self.form == "json":
             cells = ({name: plain(value) for name, value in vars(row).items()} for row in rows)
             self.document.setdefault("rows", []).extend(cells)
@@ -78,7 +78,7 @@ class Terminal(Console):
 
 @contextmanager
 def opened(path: Path) -> Iterator[Store]:
-    """A store to be written; a line on stderr where the old one is put aside."""
+    """Open a store for writing; a line on stderr reports a damaged one that was renamed."""
     with Store(path) as store:
         if store.notice:
             said(store.notice)
@@ -87,9 +87,10 @@ def opened(path: Path) -> Iterator[Store]:
 
 @contextmanager
 def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
-    """A terminal with the format of these options. In JSON the document is printed at the end: `tables`, each with
-    `title` and `rows` (an object a row, by column; null for a number that is not known), `sentences`, and `status`, the
-    exit status, with `message`. Raises BadInput for both options at once; errors of input print no document.
+    """A terminal with the form of these options. Raises BadInput for both options at once.
+
+    The JSON document is printed at the end, but not after bad input. It has `tables`, each with `title` and `rows`
+    (objects with column names as keys; null for an unknown number), `sentences`, the exit `status`, and `message`.
     """
     if as_json and as_markdown:
         raise BadInput("--json and --markdown are two forms of one output; give one of them")
@@ -107,9 +108,10 @@ def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
 def print_table(
     console: Terminal, title: str, header: Sequence[str], rows: Iterable[Sequence[str | float]], left: int
 ) -> None:
-    """A table whose first `left` columns are words, the others numbers, in the form of the terminal.
+    """Print a table in the form of the terminal. The first `left` columns are words, the others numbers.
 
-    All of it is plain text: a unit in brackets, as in "step [s]", is no markup. rich folds a table that is too wide.
+    Cells are plain text, so that a unit in brackets, as in "step [s]", is not markup. rich folds a table that is too
+    wide.
     """
     if console.form == "json":
         cells = [{name: plain(cell) for name, cell in zip(header, row, strict=True)} for row in rows]
@@ -125,7 +127,7 @@ def print_table(
     if max(map(display_width, lines)) <= console.width and not any("\n" in word for row in words for word in row):
         head, *rest = lines
         text = Text.assemble((title, "table.title"), "\n", (head, "bold"), *(f"\n{line}" for line in rest))
-        console.print(text, soft_wrap=True)  # rich takes ten times as long for a table of its own
+        console.print(text, soft_wrap=True)  # rich.Table takes ten times as long
         return
     table = Table(title=Text(title), title_justify="left", header_style="bold", show_edge=False, pad_edge=False)
     for index, name in enumerate(header):
@@ -136,7 +138,7 @@ def print_table(
 
 
 def plain(cell: Any) -> str | float | None:
-    """A cell of a document: JSON has no word for a number that is not known, nor for an infinite one."""
+    """A cell of the JSON document: null for NaN, text for an infinite number."""
     if not isinstance(cell, int | float):
         return str(cell)
     return cell if math.isfinite(cell) else None if math.isnan(cell) else str(cell)
@@ -152,10 +154,10 @@ def interruptible(
     fresh: bool = False,
     size: Callable[[Any], int] | None = None,
 ) -> Iterator[tuple[Sequence[Any], Callable[..., None], Callable[[list[Any]], None]]]:
-    """(the items to run, done, watch) for a run into a store; what Ctrl-C interrupts can be continued later.
+    """(the items to run, done, watch) for a run into a store that Ctrl-C may interrupt; done, watch: see `progress`.
 
     `words`: the plural noun for the items. `fresh`: run stored items again. `size`: the number of cases in an item, if
-    cases are counted. done and watch: see `progress`. Raises KeyboardInterrupt after a line about the stored rows.
+    cases are counted. Raises KeyboardInterrupt after a line about the stored rows.
     """
     if sentence := mislabelled():
         raise BadInput(sentence)
@@ -176,9 +178,9 @@ def interruptible(
 def progress(
     console: Console, total: int, check: Callable[[], None], unit: str = "cells"
 ) -> Iterator[tuple[Callable[..., None], Callable[[list[Any]], None]]]:
-    """(done, watch): done(result, count=1) counts results, watch(items) shows the running items; both call `check`.
+    """(done, watch): done(result, many=1) counts results, watch(items) shows the running items; both call `check`.
 
-    A bar on a terminal; a line every PULSE seconds into a file or a pipe, where a bar would not be seen.
+    A terminal shows a bar; a file or a pipe gets a line every PULSE seconds.
     """
     bar: Progress | None = None
     if console.is_terminal:

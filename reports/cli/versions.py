@@ -1,4 +1,4 @@
-"""`crosscheck versions`: released versions of an engine, each in a process of its own, side by side."""
+"""`crosscheck versions`: runs scenes in released versions of an engine and prints a table of their errors."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from reports.versions.catalogue import compared_versions, engines_named
 from reports.versions.column import VersionColumn
 from reports.versions.table import DATA, ReleaseTable, as_csv, as_published, changes, entries, merged, read, released
 
-WIDTH = 150  # into a file or a pipe
+WIDTH = 150  # columns of a table in a file or a pipe
 
 
 def versions(
@@ -95,7 +95,7 @@ def _run(
     store: Path,
     **terms: Any,
 ) -> VersionColumn:
-    """Run a release, and print how it ended. Raises BadInput."""
+    """Run a release, and print the number of rows. Raises BadInput."""
     begin = monotonic()
     column = run_release(name, number, scenes, store, progress_of(console, check), announce_pip, **terms)
     console.say(f"{name} {number}: {len(column.rows)} rows after {monotonic() - begin:.0f} s")
@@ -105,7 +105,7 @@ def _run(
 
 
 def progress_of(console: Terminal, check: Callable[[], None]) -> Progress:
-    """The progress of columns on a terminal; `check` for Ctrl-C."""
+    """A Progress that shows the cells of a version on a terminal; `check` raises after Ctrl-C."""
 
     @contextmanager
     def shown(label: str, count: int) -> Iterator[tuple[Callable[..., None], Callable[[Sequence[str]], None]]]:
@@ -118,7 +118,7 @@ def progress_of(console: Terminal, check: Callable[[], None]) -> Progress:
 def _versions_by_engine(
     engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool
 ) -> dict[str, tuple[str, ...]]:
-    """Engine -> versions. Raises BadInput for words that don't go together, or are not known."""
+    """Engine -> versions. Raises BadInput for contradictory arguments or an unknown engine."""
     if everything:
         if engine is not None:
             raise BadInput("--all runs the versions of every engine; leave the engine out")
@@ -133,13 +133,13 @@ def _versions_by_engine(
 
 
 def named_scenes(words: list[str] | tuple[str, ...]) -> tuple[Scene, ...]:
-    """The scenes named; else those whose run at a usual step is short. Raises BadInput."""
+    """The scenes with these names, which may be separated by commas; all scenes without names. Raises BadInput."""
     names = [name.strip() for argument in words for name in argument.split(",") if name.strip()]
     return choose(names).scenes
 
 
 def announce_pip(word: str) -> None:
-    """Print a line of progress on stderr before pip runs; it does not begin like a refusal."""
+    """Print a line on stderr before pip runs, without the prefix of an error message."""
     print(f"{word}: installed by pip, unless it is there already", file=sys.stderr, flush=True)
 
 
@@ -152,7 +152,7 @@ def _table(name: str, columns: list[VersionColumn]) -> ReleaseTable:
 
 
 def _print(console: Terminal, table: ReleaseTable, name: str) -> None:
-    """Errors at a usual step, a line a scene and method, a column a version; outcomes where there is no error."""
+    """Print the errors, or outcomes, in a table with a row for each scene and method and a column for each version."""
     numbers = table.versions(name)
     lines: dict[tuple[str, str, str], dict[str, str | float]] = {}
     for entry in table.entries:

@@ -1,1 +1,1 @@
-"""Released versions of engines beside one another: installed apart, each run in a process of its own."""
+"""Comparison of released versions of engines; each has its own folder and runs in its own process."""

@@ -22,30 +22,30 @@ from reports.versions.column import VersionColumn, VersionRequest, cells_of, col
 from reports.versions.comparison import RowComparison, compared
 
 STORE = "cells.sqlite"
-# A loop, rolling, a skate, a slide, a chain: one short scene of each kind of joint, with others that are driven.
+# Short scenes with all kinds of joints: a loop, free and driven, a slide, rolling contact, a skate and a chain.
 SCENES = ("driven_four_bar", "free_four_bar", "free_slider_crank", "rolling_ellipse", "sleigh", "pendulum_2")
-LONGEST_CELL = 1.0  # s by the engine's formula: longer ones are left out of a comparison
+LONGEST_CELL = 1.0  # s by the engine's formula; a comparison leaves out longer cells
 
 Done = Callable[[Measurement], None]
 Watch = Callable[[Sequence[str]], None]
-# (label, how many cells) -> a context with a function for each row, and one for the labels of running cells.
+# (label, number of cells) -> a context with a function for each row, and one for the labels of running cells.
 Progress = Callable[[str, int], AbstractContextManager[tuple[Done, Watch]]]
 
 
 @contextmanager
 def no_progress(label: str, count: int) -> Iterator[tuple[Done, Watch]]:
-    """Progress that is not shown."""
+    """A Progress that shows nothing."""
     yield (lambda row: None), (lambda labels: None)
 
 
 @dataclass(frozen=True)
 class Build:
-    """A version or build: its label in tables, and whether its rows are stored: those of a build may change."""
+    """A released version of an engine, or another build of it."""
 
-    label: str
+    label: str  # in tables
     engine: str
     location: Path
-    stored: bool
+    stored: bool  # whether its rows are stored: those of a version are, those of another build may change
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class BuildComparison:
 
     @property
     def complaint(self) -> str:
-        """One sentence if the second is worse; empty otherwise."""
+        """A sentence if the second build is worse; empty otherwise."""
         worse, grown = self.comparison.worse, self.comparison.grown
         if not (worse or grown):
             return ""
@@ -68,7 +68,6 @@ class BuildComparison:
 
 
 def scenes_named(names: Sequence[str] = SCENES) -> tuple[Scene, ...]:
-    """The registered scenes of these names."""
     return tuple(scene for scene in ALL_SCENES if scene.name in names)
 
 
@@ -82,10 +81,11 @@ def compare_builds(
     progress: Progress = no_progress,
     announce: Callable[[str], None] = lambda word: None,
 ) -> BuildComparison:
-    """Run the scenes (six short ones if None) in two builds: NAME==VERSION, a wheel, or a folder that holds a build.
+    """Run the scenes (SCENES if None) in two builds, each NAME==VERSION, a wheel, or a folder with a build.
 
-    engine: its name, or a reference to one; found by the packages of the builds if None. results: the folder of the
-    store for rows of releases. `announce` is called with what pip is about to install. Raises BadInput.
+    engine: a name or a reference; if None, the engine that needs the packages of the builds. results: the folder of the
+    store for rows of released versions. `announce` is called with the name of each build before pip runs. Raises
+    BadInput.
     """
     engines = (*VARIANTS, *OTHERS) if engine is None else engines_named(engine)
     a, b = (side_of(word, engine, engines, announce) for word in (first, second))
@@ -122,9 +122,9 @@ def run_release(
     announce: Callable[[str], None] = lambda word: None,
     **terms: Any,
 ) -> VersionColumn:
-    """Run scenes in a release of an engine, which is installed once. `terms`: fields of VersionRequest.
+    """Run scenes in a release of an engine, which is installed if necessary. `terms`: fields of VersionRequest.
 
-    Raises BadInput where there is no such release.
+    Raises BadInput if the release does not exist.
     """
     engines = engines_named(name)
     announce(f"{name} {version}")
@@ -133,7 +133,7 @@ def run_release(
 
 
 def _request(engine: str, location: Path, scenes: Sequence[Scene] | None, store: Path, **terms: Any) -> VersionRequest:
-    """The request for the version or build that lies in `location`; `terms`: further fields."""
+    """The request for the version or build in `location`; `terms`: further fields."""
     chosen = scenes_named() if scenes is None else tuple(scenes)
     return VersionRequest(chosen, engine, modules_in(location), location, store.absolute(), folder=Path.cwd(), **terms)
 
@@ -141,13 +141,12 @@ def _request(engine: str, location: Path, scenes: Sequence[Scene] | None, store:
 def run_column(
     label: str, version: str, request: VersionRequest, engines: Sequence[Engine], progress: Progress
 ) -> VersionColumn:
-    """A column, with its progress."""
     with progress(label, len(cells_of(request, engines))) as (done, watch):
         return column(version, request, engines, watch, done)
 
 
 def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: Callable[[str], None]) -> Build:
-    """The build that a word means. Raises BadInput."""
+    """The build that an argument of the command line names. Raises BadInput."""
     name, equals, version = word.partition("==")
     if equals:
         method = engine_of(engines, [name])

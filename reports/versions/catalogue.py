@@ -18,15 +18,15 @@ SPARSE = "https://github.com/google-deepmind/mujoco/issues/3767"
 
 @dataclass(frozen=True)
 class NamedRelease:
-    """`changed`: a clause about a change that is known by name, with its `source`, an address."""
+    """A release of an engine."""
 
     engine: str
     version: str
-    changed: str = ""
-    source: str = ""
+    changed: str = ""  # a clause about a known change
+    source: str = ""  # the address of a page about the change
 
 
-# About one release of every minor series, and all about which something is known, oldest first.
+# About one release of each minor series, and all releases with a known change, oldest first.
 RELEASES = (
     NamedRelease("mujoco", "3.3.0"),
     NamedRelease("mujoco", "3.3.7"),
@@ -50,7 +50,7 @@ RELEASES = (
         "the sparse Cholesky factor of Newton's Hessian became wrong for some trees that branch and close across",
         SPARSE,
     ),
-    NamedRelease("mujoco", "4.0.1", "that factor was mended", SPARSE),
+    NamedRelease("mujoco", "4.0.1", "that factor was corrected", SPARSE),
     NamedRelease("pymunk", "7.0.0"),
     NamedRelease("pymunk", "7.1.0"),
     NamedRelease("pymunk", "7.2.0"),
@@ -60,24 +60,24 @@ RELEASES = (
 # The release of MuJoCo with which a step as shipped needs more CPU time, measured once beside 3.3.0 (see the page).
 COST_ROSE_IN = "3.3.1"
 
-# Names that a distribution had before; the first that has a version is taken.
+# Former names of distributions, the newest first.
 FORMERLY: Mapping[str, tuple[str, ...]] = {"mujoco-core": ("mujoco",)}
 
 
 def compared_versions() -> dict[str, tuple[str, ...]]:
-    """Engine -> its versions that are compared."""
+    """Engine -> versions in RELEASES."""
     engines = dict.fromkeys(release.engine for release in RELEASES)
     return {name: tuple(release.version for release in RELEASES if release.engine == name) for name in engines}
 
 
 def changes_between(engine: str, before: str, after: str) -> tuple[NamedRelease, ...]:
-    """Releases after the one up to the other with a change that is known by name."""
-    of_engine = [release for release in RELEASES if release.engine == engine and release.changed]
-    return tuple(each for each in of_engine if numbers(before) < numbers(each.version) <= numbers(after))
+    """Releases with a known change that are newer than `before` and not newer than `after`."""
+    changed = [release for release in RELEASES if release.engine == engine and release.changed]
+    return tuple(release for release in changed if numbers(before) < numbers(release.version) <= numbers(after))
 
 
 def engines_named(word: str) -> tuple[Engine, ...]:
-    """The engines of a name or of a reference. Raises BadInput."""
+    """The engines with a name, or of a reference. Raises BadInput."""
     if is_reference(word):
         try:
             return load(word)
@@ -90,12 +90,12 @@ def engines_named(word: str) -> tuple[Engine, ...]:
 
 
 def distributions(engine: Engine) -> tuple[str, ...]:
-    """The distributions in which versions of an engine come, the newest name first."""
+    """The distributions that contain the engine, each newest name first."""
     return tuple(name for package in engine.packages for name in (package, *FORMERLY.get(package, ())))
 
 
 def engine_of(engines: Sequence[Engine], names: Sequence[str]) -> Engine | None:
-    """The first engine whose numbers depend on one of these distributions or modules."""
+    """The first engine that is or needs one of these distributions or modules."""
     wanted = {normalised(name) for name in names}
     for engine in engines:
         if wanted & {normalised(name) for name in (engine.name, *distributions(engine))}:

@@ -1,8 +1,8 @@
-"""The process of one version, whose folder is first on its path: it runs cells and sends their rows.
+"""The process that runs the cells of one version and sends their rows; the version's folder is first on its path.
 
 `reports.versions.column` starts it and writes two pickles to its standard input: folders of further modules, and a
-VersionRequest. It ends, with its workers, when that pipe is closed. A module that may import an engine is imported
-only after output of engines has been redirected from the standard output.
+VersionRequest. The process and its workers end when that pipe is closed. It imports modules that may import an engine
+only after redirecting its standard output, since an engine may print.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 
 def main() -> None:
-    """Answer one request: pickled messages on the standard output, the last one None or a Loss."""
+    """Answer one request with pickled messages on the standard output; the last message is None or a Loss."""
     # The parent alone handles signals that are sent to all processes of the command.
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
@@ -35,7 +35,7 @@ def main() -> None:
         out.flush()
 
     send(answer(request, send))
-    os._exit(0)  # threads of an engine must not keep it
+    os._exit(0)  # a normal exit would wait for threads of an engine
 
 
 def _end_with_the_parent() -> None:

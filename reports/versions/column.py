@@ -1,4 +1,4 @@
-"""The rows of one version: run in a process of its own that has the version's folder first on its path."""
+"""The rows of one version, computed in a process that has the version's folder first on its path."""
 
 from __future__ import annotations
 
@@ -28,49 +28,44 @@ from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from reports.versions.trees import Trees, engines_for_trees
 
-MARK = "known to be wrong"  # adapters put it into the sentence of every row of such a release
+MARK = "known to be wrong"  # our adapters write it into the sentence of each row of a faulty release
 # Python's exceptions for a missing name: our adapter uses one that this version lacks.
 LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
-LONGEST = 300  # characters of the last line that a process printed
+LONGEST_LAST_LINE = 300  # characters of the last line that a process printed
 
 Watch = Callable[[Sequence[str]], None]
 
 
 @dataclass(frozen=True)
 class VersionRequest:
-    """Which scenes, in which engine at how many steps a sample; stored rows are not run again.
-
-    engine: a registered name, or a reference (`engines.loading`) relative to `folder`; all its variants are run, or
-    those named. modules: top-level packages that have to come from `location`, the version's own folder. most: a cell
-    is left out whose run would take longer by its engine's formula [s].
-    """
+    """The cells of one version that are to be run."""
 
     scenes: tuple[Scene, ...]
-    engine: str
-    modules: tuple[str, ...]
-    location: Path
+    engine: str  # a registered name, or a reference (`engines.loading`) relative to `folder`
+    modules: tuple[str, ...]  # top-level packages that must be imported from `location`
+    location: Path  # the folder of the version
     store: Path
-    variants: tuple[str, ...] = ()
-    every: tuple[int, ...] = (10,)
-    most: float = float("inf")
-    trees: bool = False
-    fresh: bool = False
+    variants: tuple[str, ...] = ()  # all if empty
+    every: tuple[int, ...] = (10,)  # steps between samples
+    most: float = float("inf")  # s; a cell is left out if it takes longer by its engine's formula
+    trees: bool = False  # whether the random trees are run too
+    fresh: bool = False  # whether stored cells are run again
     folder: Path = Path(".")
     limit: float = TIME_LIMIT
 
 
 @dataclass(frozen=True)
 class VersionColumn:
-    """All rows of one version, and its answers on random trees; `trouble`: a sentence on why it can't be used."""
+    """The results of one version."""
 
     version: str
     rows: tuple[Measurement, ...]
     trees: tuple[tuple[Trees, Answer], ...] = ()
-    trouble: str = ""
+    trouble: str = ""  # the reason why the version can't be used
 
     @property
     def mark(self) -> str:
-        """Why this version's numbers are known to be wrong, in the words of its rows; empty if they aren't."""
+        """The sentence of a row that explains why this version is known to be wrong; empty for other versions."""
         parts = (part for row in self.rows for part in row.sentence.split("; ") if MARK in part)
         return next(parts, "").removeprefix("ours: ")
 
@@ -82,11 +77,11 @@ def column(
     watch: Watch = lambda labels: None,
     done: Callable[[Measurement], None] = lambda row: None,
 ) -> VersionColumn:
-    """Run a version. If its process fails, rows say so; BadInput if its code is of another version than its metadata.
+    """Run a version. Rows report a failure of its process.
 
-    engines: as they are in this process, for the rows of a version that can't be used. `watch` is called a few times a
-    second with the labels of running cells, and may raise: then the process is ended; the rows so far are in the store.
-    `done` is called with each row.
+    engines: those of this process, for the rows of a version that can't be used. `watch` is called a few times a second
+    with the labels of running cells; if it raises, the process is ended, and the rows so far remain stored. `done` is
+    called with each row. Raises BadInput if the code and the metadata of the version have different version numbers.
     """
     rows: list[Measurement] = []
     trees: list[tuple[Trees, Answer]] = []
@@ -131,7 +126,7 @@ def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
 
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
-    """The messages of the process, see `answer`; a Loss at the end if it ended too early."""
+    """The messages of the process (`answer`), and a Loss if the process ended before its last message."""
     with temporary_folder() as folder:  # files of engines are deleted with it; none of its files hides a module
         error_file = folder / "said.txt"
         with error_file.open("wb") as errors:
@@ -154,7 +149,7 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
         except (EOFError, OSError, pickle.UnpicklingError):
             code = process.wait()
             lines = error_file.read_text(encoding="utf-8", errors="replace").split("\n")
-            last = next((line.strip()[:LONGEST] for line in reversed(lines) if line.strip()), "")
+            last = next((line.strip()[:LONGEST_LAST_LINE] for line in reversed(lines) if line.strip()), "")
             yield Loss(Outcome.ABORTED, ": ".join(filter(None, (describe_exit(code), last))))
         finally:
             process.kill()
@@ -164,8 +159,10 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
 
 
 def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
-    """In the process of a version: run the request and send each row, each (Trees, Answer) and, a few times a second,
-    the labels of running cells. Returns the reason if the version can't be used, else None."""
+    """In the process of a version: run the request; return the reason if the version can't be used, else None.
+
+    `send` is called with each row, each (Trees, Answer), and a few times a second with the labels of running cells.
+    """
     try:
         engines = _usable_engines(request)
     except ValueError as error:
@@ -182,7 +179,7 @@ def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
 
 
 def _usable_engines(request: VersionRequest) -> list[Engine]:
-    """The requested engines. Raises ValueError where they can't be used with this version."""
+    """The requested engines. Raises ValueError if they can't be used with this version."""
     cant = "our adapter can't use it"
     engines = (*registry.VARIANTS, *registry.OTHERS)
     try:
@@ -196,7 +193,7 @@ def _usable_engines(request: VersionRequest) -> list[Engine]:
         raise ValueError(f"{cant}: {(reasons or ['it registers no engine'])[0]}")
     if engines[0].missing:
         raise ValueError(f"{cant}: {engines[0].missing}")
-    for module in engines[0].modules:  # extras import theirs when they build
+    for module in engines[0].modules:  # an extra imports its modules only when it builds a model
         try:
             import_module(module)
         except Exception as error:
@@ -230,7 +227,7 @@ def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any
 
 
 def modules_in(folder: Path) -> tuple[str, ...]:
-    """The top-level packages and modules that lie in a folder."""
+    """The top-level packages and modules in a folder."""
     names = {
         path.name.split(".")[0]
         for path in folder.iterdir()

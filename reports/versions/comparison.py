@@ -1,4 +1,4 @@
-"""Rows of two versions of an engine against each other, by the rule of the gate's baseline."""
+"""Comparison of the rows of two versions of an engine, by the rule of the gate's baseline."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
 
-SAME_ORDER = 0.5  # two local slopes of one method differ by less
+SAME_ORDER = 0.5  # a difference of observed orders up to this value is not reported
 
 
 class Difference(NamedTuple):
-    """One quantity of a row, or its outcome, that is more than three times as large in one of the two."""
+    """A quantity that differs by more than a factor of three between two rows, or a different outcome."""
 
     before: Measurement
     after: Measurement
@@ -28,12 +28,11 @@ class Difference(NamedTuple):
     worse: bool
 
     def value(self, row: Measurement) -> float | str:
-        """The quantity in a row; its outcome where that is what differs."""
         return getattr(row, self.quantity)
 
     @property
     def factor(self) -> float:
-        """How many times the larger one is the smaller one; infinite for an outcome."""
+        """The ratio of the larger value to the smaller one; infinite for an outcome."""
         if self.quantity == "outcome":
             return math.inf
         low, high = sorted((getattr(self.before, self.quantity), getattr(self.after, self.quantity)))
@@ -41,7 +40,7 @@ class Difference(NamedTuple):
 
 
 class OrderChange(NamedTuple):
-    """The observed orders of the angle's error of a method in a scene, where they differ."""
+    """A difference of the observed orders of the angle error of a method in a scene."""
 
     scene: str
     method: str
@@ -51,7 +50,7 @@ class OrderChange(NamedTuple):
 
 @dataclass(frozen=True)
 class RowComparison:
-    """`pairs`: rows of one cell, before and after."""
+    """The comparison of (earlier row, later row) pairs, each of one cell."""
 
     pairs: tuple[tuple[Measurement, Measurement], ...]
 
@@ -65,7 +64,7 @@ class RowComparison:
 
     @cached_property
     def grown(self) -> tuple[Check, ...]:
-        """Failed checks of a method's errors over all scenes."""
+        """Failed checks of the errors of a method over all scenes."""
         return tuple(
             check for check in growth((later, _old(earlier)) for earlier, later in self.pairs) if not check.passed
         )
@@ -81,7 +80,7 @@ class RowComparison:
 
     @cached_property
     def cost(self) -> float:
-        """The median of the ratios of CPU times; NaN where nothing was timed."""
+        """The median of the ratios of CPU times; NaN if no pair was timed."""
         timed = [pair for pair in self.pairs if all(Outcome(row.outcome).comparable and row.cpu > 0 for row in pair)]
         return median(later.cpu / earlier.cpu for earlier, later in timed) if timed else math.nan
 
@@ -102,7 +101,6 @@ class RowComparison:
 
     @property
     def scene(self) -> str:
-        """The scene of the first pair."""
         return self.pairs[0][1].scene
 
     @property
@@ -111,7 +109,7 @@ class RowComparison:
 
     @property
     def chief(self) -> Difference:
-        """The largest difference, a worse number first; where nothing differs the angle at the finest step."""
+        """The largest difference among the worse ones, else among all; without any, the angle at the smallest step."""
         if not self.differences:
             return Difference(*min(self.pairs, key=lambda pair: pair[1].step), "angle", False)
         return max(self.differences, key=lambda difference: (difference.worse, difference.factor))
@@ -127,7 +125,7 @@ class RowComparison:
 
 
 def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> RowComparison:
-    """Rows of the same cells against each other; a cell that only one has is left out."""
+    """The comparison of the cells that both sides have."""
     new = {identity(row): row for row in after}
     old = {identity(row): row for row in before}
     return RowComparison(tuple((row, new[key]) for key, row in old.items() if key in new))

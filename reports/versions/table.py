@@ -1,4 +1,4 @@
-"""Rows of released versions as CSV, a line for each scene, method and version, and what changes along such a line."""
+"""The table of released versions: an entry for each scene, method and version, and the changes between versions."""
 
 from __future__ import annotations
 
@@ -24,17 +24,16 @@ from reports.versions.trees import Trees
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
-WRONG_TREE = 0.01  # error relative to the largest acceleration above which a tree is counted as wrong
-# Relative error of accelerations below which only the difference over a step and the solver's tolerance are seen.
+WRONG_TREE = 0.01  # error relative to the largest acceleration above which a tree counts as wrong
+# Relative error of accelerations below which the error of the finite difference and of the solver dominate.
 ACCELERATION_ROUNDING = 1e-3
-SAME_COST = 0.1  # relative difference of two CPU times that is noise: the machine did other work too
-LONGEST = 200  # characters of a sentence
+SAME_COST = 0.1  # relative difference of two CPU times that counts as noise
+LONGEST_SENTENCE = 200  # characters
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One scene in one method of one version. `error`: largest of `quantity` (of random trees relative to the largest
-    acceleration); NaN without one."""
+    """The result of a scene in a method of a version."""
 
     engine: str
     version: str
@@ -42,10 +41,10 @@ class Entry:
     variant: str
     step: float  # s
     quantity: str
-    error: float
+    error: float  # largest of `quantity`, relative to the largest acceleration for random trees; NaN without a motion
     outcome: str
-    cpu: float  # s per simulated second; NaN of trees
-    sentence: str  # why there is no error; of trees how many are wrong
+    cpu: float  # s per simulated second; NaN for random trees
+    sentence: str  # the reason for a missing error; for random trees the number of wrong ones
 
     @property
     def comparable(self) -> bool:
@@ -53,7 +52,6 @@ class Entry:
 
     @property
     def is_supported(self) -> bool:
-        """Whether the version can run this scene at all."""
         return Outcome(self.outcome) not in (Outcome.UNSUPPORTED, Outcome.LOST)
 
     @property
@@ -62,7 +60,7 @@ class Entry:
 
     @property
     def size(self) -> float:
-        """The error, at least the quantity's rounding; infinite where the run has no error that can be compared."""
+        """The error, at least the quantity's rounding; infinite without an error."""
         rounding = ACCELERATION_ROUNDING if self.quantity == ACCELERATION else quantity(self.quantity).rounding
         return max(self.error, rounding) if self.comparable else math.inf
 
@@ -73,26 +71,25 @@ class Entry:
 
 @dataclass(frozen=True)
 class ReleaseTable:
-    """All entries; `marks`: by (engine, version) why its numbers are known to be wrong, or why it can't be used."""
+    """The entries of all versions."""
 
     entries: tuple[Entry, ...]
-    marks: Mapping[tuple[str, str], str]
+    marks: Mapping[tuple[str, str], str]  # (engine, version) -> why it is known to be wrong, or can't be used
 
     @property
     def engines(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(entry.engine for entry in self.entries))
 
     def versions(self, engine: str) -> tuple[str, ...]:
-        """An engine's versions, oldest first."""
+        """The versions of an engine, the oldest first."""
         return tuple(sorted({entry.version for entry in self.of(engine)}, key=numbers))
 
     def of(self, engine: str) -> list[Entry]:
-        """The entries of one engine."""
         return [entry for entry in self.entries if entry.engine == engine]
 
 
 def entries(engine: str, column: VersionColumn, quantities: Mapping[str, str]) -> list[Entry]:
-    """The entries of a version; `quantities`: by which error a scene is compared, the angle's unless it is listed."""
+    """The entries of a version; `quantities`: scene -> the compared quantity, the angle for other scenes."""
     out = []
     for row in column.rows:
         name = quantities.get(row.scene, "angle")
@@ -104,7 +101,7 @@ def entries(engine: str, column: VersionColumn, quantities: Mapping[str, str]) -
 
 
 def _shortened(sentence: str) -> str:
-    return " ".join(sentence.split())[:LONGEST]
+    return " ".join(sentence.split())[:LONGEST_SENTENCE]
 
 
 def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> Entry:
@@ -114,7 +111,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
         wrong = sum(not miss <= WRONG_TREE for miss in misses)
         error = max((math.inf if math.isnan(miss) else float(miss) for miss in misses), default=math.nan)
         sentence = f"{wrong} of {len(misses)} by more than {WRONG_TREE:g}"
-    elif "Error: " in answer.sentence:  # an exception of Python: the version lacks a name that the adapter uses
+    elif "Error: " in answer.sentence:  # Python's exception for a name that the version lacks
         outcome = Outcome.UNSUPPORTED
     scene = f"random trees ({trees.bodies} bodies, {trees.loops} loops)"
     method = (scene, trees.method.variant, math.nan, ACCELERATION)
@@ -122,7 +119,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
 
 
 def as_csv(table: ReleaseTable) -> str:
-    """The file: marks as comments on top, then a line for each entry, sorted."""
+    """The table as CSV: the marks as comments, then the sorted entries."""
     out = io.StringIO()
     for (engine, version), mark in table.marks.items():
         out.write(f"# {engine} {version}: {mark}\n")
@@ -138,7 +135,7 @@ def _as_text(value: Any) -> str:
 
 
 def read(path: Path) -> ReleaseTable:
-    """Read such a file; an empty table if the file does not exist. Raises ValueError for a file of another kind."""
+    """Read the output of `as_csv`; an empty table if the file does not exist. Raises ValueError for another file."""
     if not path.is_file():
         return ReleaseTable((), {})
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -155,7 +152,7 @@ def read(path: Path) -> ReleaseTable:
 
 @cache
 def released(path: Path = DATA) -> ReleaseTable:
-    """The published table, without releases that the catalogue does not list any more."""
+    """The table in a file, the published one by default, without versions that are no longer in RELEASES."""
     compared, table = compared_versions(), read(path)
 
     def is_listed(engine: str, version: str) -> bool:
@@ -166,7 +163,7 @@ def released(path: Path = DATA) -> ReleaseTable:
 
 
 def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:
-    """The new entries, and the old ones of other versions."""
+    """The new entries, and the old entries of versions without new ones."""
     renewed = {(entry.engine, entry.version) for entry in new.entries}
     remaining = tuple(entry for entry in old.entries if (entry.engine, entry.version) not in renewed)
     marks = {key: mark for key, mark in old.marks.items() if key not in renewed}
@@ -174,7 +171,7 @@ def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:
 
 
 def as_published(table: ReleaseTable, before: ReleaseTable) -> ReleaseTable:
-    """The entries, with the numbers of `before` where only rounding, or noise of a CPU time, makes another of them."""
+    """The entries, with the numbers of `before` where a difference is only rounding or noise of a CPU time."""
     published = {entry.identity: entry for entry in before.entries}
     renewed = tuple(_as_published(entry, published.get(entry.identity, entry)) for entry in table.entries)
     return ReleaseTable(renewed, table.marks)
@@ -192,8 +189,10 @@ def _as_published(now: Entry, before: Entry) -> Entry:
 
 
 def change(before: Entry, after: Entry) -> str:
-    """From one version to the next: "better" or "WORSE" where one is more than three times as large, "other" where both
-    end without an error to compare; or empty."""
+    """The change between two versions, or empty.
+
+    "better" and "WORSE" mean a factor of more than three; "other" means two different outcomes without an error.
+    """
     small, large = sorted((before.size, after.size))
     if small < large and (math.isinf(large) or large > WORSE * small):
         return "WORSE" if after.size > before.size else "better"
@@ -201,8 +200,10 @@ def change(before: Entry, after: Entry) -> str:
 
 
 def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
-    """(before, after, `change`) of neighbouring versions of each scene and method that differ; runs that a version does
-    not support are left out."""
+    """(before, after, `change`) of successive versions that differ, for each scene and method.
+
+    Versions that do not support a scene are left out.
+    """
     lines: dict[tuple[Any, ...], list[Entry]] = {}
     for entry in sorted(entries, key=lambda entry: entry.identity):
         if entry.is_supported:
@@ -212,7 +213,7 @@ def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
 
 
 def relative_cost(entries: Iterable[Entry], versions: Sequence[str], variant: str) -> dict[str, float]:
-    """Version -> CPU time over that of the newest: the median of the scenes that ran to their end in both."""
+    """Version -> CPU time relative to the newest version: the median of the scenes that both have completed."""
     timed = [entry for entry in entries if entry.variant == variant and entry.comparable and entry.cpu > 0]
     newest = {entry.scene: entry.cpu for entry in timed if entry.version == versions[-1]}
     ratios: dict[str, list[float]] = {version: [] for version in versions}

@@ -1,6 +1,6 @@
-"""Random trees of pins that branch and close across: the error of an engine's accelerations at one instant.
+"""Random branching chains of pin joints with closed loops: the error of an engine's accelerations at one instant.
 
-No integration has a part in it, so that a fault of a release stands alone; and nobody chose these mechanisms.
+Accelerations have no error of time integration, so that they show a fault of a release alone.
 """
 
 from __future__ import annotations
@@ -20,32 +20,31 @@ from reports.model.tasks import Task, Values
 from reports.search.parts import Recipe, RecipeBody, RecipeLink
 from reports.search.recipe import build
 
-STEP = 1e-5  # of the mechanism's time scale: the relative error of a difference over it is about as large
-STEPS = 2  # the first step of engines that solve for velocities has no velocity term of the joints yet
-SEED = 12
+TREE_STEP = 1e-5  # of the mechanism's time scale; the relative error of a finite difference is about as large
+TREE_STEPS = 2  # since the first step of a velocity-level solver lacks the velocity term of the joints
+TREE_SEED = 12
 
 
 def engines_for_trees(engine: str, variants: Sequence[Engine]) -> tuple[Engine, ...]:
-    """MuJoCo's, and one with the sparse factorisation that it takes by itself from 60 degrees of freedom on.
+    """MuJoCo's variants, and one with the sparse factorisation, MuJoCo's default from 60 degrees of freedom on.
 
-    Not as shipped, which is so soft that every tree is wrong. None of pymunk, none of whose versions does the sweeps
-    that so many loops need.
+    Without the default variant, whose joints are so soft that every tree is wrong. Empty for pymunk, which would need
+    too many iterations for these loops.
     """
     if engine != "mujoco":
         return ()
     from engines.mujoco.methods import EXTENDED
 
-    # More than five of Newton's iterations bring nothing, and no tolerance would stop them.
+    # Five iterations of Newton's method suffice; the tolerance is too small to stop them earlier.
     newton = replace(EXTENDED, solvers=("Newton",), iterations=5, tolerance=1e-20)
     return (*variants[1:], replace(newton, variant="extended, sparse", jacobian="sparse"))
 
 
 @dataclass(frozen=True)
 class Trees(Task):
-    """`miss` of the first random trees of so many bodies and loops in an engine.
+    """`miss` of `count` random trees in an engine.
 
-    They are small enough to be analysed by hand; one in ten shows the fault that MuJoCo 4.0.0 has with sparse
-    Jacobians.
+    Trees of 12 bodies can be analysed by hand, and one in ten shows the fault of MuJoCo 4.0.0 with sparse Jacobians.
     """
 
     method: Engine
@@ -65,11 +64,11 @@ class Trees(Task):
 
 @lru_cache(maxsize=4)
 def trees(bodies: int, loops: int, count: int) -> tuple[Mechanism, ...]:
-    """Random trees, each body on an earlier one or on the ground, with this many pins more that close loops.
+    """Random trees: a pin connects each body to an earlier one or to the ground, and `loops` further pins close loops.
 
-    Lengths are about a metre, masses 0.1 to 10 kg; all move and fall. Those with nearly dependent rows are drawn again.
+    Lengths are about 1 m, masses 0.1 to 10 kg. A tree with nearly dependent rows is replaced by another one.
     """
-    random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([SEED, bodies, loops])))
+    random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([TREE_SEED, bodies, loops])))
     drawn: list[Mechanism] = []
     while len(drawn) < count:
         try:
@@ -97,12 +96,12 @@ def _recipe(random: np.random.Generator, bodies: int, loops: int) -> Recipe:
 
 
 def miss(engine: Engine, mechanism: Mechanism) -> float:
-    """The largest error of the accelerations over the second step, relative to the largest ideal one.
+    """The largest error of the mean accelerations in the last step, relative to the largest ideal acceleration.
 
-    Angular ones count by the mechanism's length. NaN where the engine gives no finite motion.
+    Angular accelerations are multiplied by the length of the mechanism. NaN if a value is not finite.
     """
-    dt = STEP * mechanism.time_scale
-    motion = engine.build(mechanism, dt)(STEPS, 1)
+    dt = TREE_STEP * mechanism.time_scale
+    motion = engine.build(mechanism, dt)(TREE_STEPS, 1)
     ideal, _ = constrained_acceleration(mechanism, motion.pose[-1], motion.twist[-1])
     acceleration = (motion.twist[-1] - motion.twist[-2]) / dt
     scale = mechanism.length_scale / mechanism.pose_unit
