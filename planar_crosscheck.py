@@ -12,8 +12,8 @@
     beside                                                  # truth, run, errors and a figure; beside.frame() for pandas
     rows = crosscheck.run("free_four_bar", "pymunk", every=[100])   # rows of errors; crosscheck.report() writes pages
 
-`reference`, `engines` and `reports` are general names, and Python takes the first package of a name that it finds:
-`clash` reports a foreign package that hides one of this suite. Slow modules are imported when they are called.
+`reference`, `engines` and `reports` are general names, so that a foreign package may hide one of this suite; `clash`
+reports it. Modules that are slow to import are imported inside functions.
 """
 
 from __future__ import annotations
@@ -44,11 +44,11 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 
 
 def clash(packages: tuple[str, ...] = PACKAGES) -> str:
-    """A sentence about the first package that is not the one beside this file; empty if all are. Imports none."""
+    """A sentence about the first package that is not the one beside this file, or empty. Imports no package."""
     for name in packages:
         try:
             spec = find_spec(name)
-        except (ImportError, ValueError):  # a module of this name was put there by hand
+        except (ImportError, ValueError):  # a module without a spec has this name
             spec = None
         folders = [] if spec is None else list(spec.submodule_search_locations or [spec.origin])
         if os.path.join(HERE, name) not in map(os.path.realpath, filter(None, folders)):
@@ -73,11 +73,11 @@ def check(
     apply: str | Path = "",
     folder: Path | None = None,
 ) -> CheckReport:
-    """What `crosscheck check` finds of a model: a file as on the command line, a mujoco.MjModel or a pymunk.Space.
+    """The report of `crosscheck check` on a model: a file as on the command line, a mujoco.MjModel or a pymunk.Space.
 
-    duration [s]: of the motion that is judged; tolerance: of angles [rad] and of places in lengths of the mechanism;
-    `without`, `key`, `step` [s], `quick`, `fix_to` and `apply` are the command's options; folder: where files are
-    looked for, the current one unless it is given. Raises ValueError, with the reason, if the model can't be judged.
+    duration [s]: of the checked motion. tolerance: largest error of angles [rad], and of positions in lengths of the
+    mechanism. `without`, `key`, `step` [s], `quick`, `fix_to` and `apply` are the options of the command. folder: the
+    base of relative paths, the current folder if None. Raises ValueError if the model can't be checked.
     """
     from reports.check.request import CheckRequest, Refused, run_check
 
@@ -94,10 +94,10 @@ def check(
 
 
 def compare(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float = 2.0) -> Comparison:
-    """A mechanism in an engine at a step dt [s], beside exact multipliers, for a duration [s].
+    """Compare the run of an engine at a step dt [s] over a duration [s] with the ideal motion of the mechanism.
 
-    engine: an object of `engines`, or the name of one: "mujoco tuned". Raises ValueError, also where an engine can't
-    build the mechanism.
+    engine: an object, or a name such as "mujoco tuned". Raises ValueError, also if the engine can't build the
+    mechanism.
     """
     from reports.check.comparing import compare_with_ideal
 
@@ -117,10 +117,10 @@ def run(
     workers: int | None = None,
     results: str | Path = "crosscheck-results",
 ) -> list[Measurement]:
-    """The rows of `crosscheck run`: cells that the folder `results` does not have are run and stored there.
+    """The rows of `crosscheck run`; cells that are not stored in the folder `results` are run and stored there.
 
-    scenes: names of scenes or pages, all if empty; settings: other numbers of these scenes; every: steps between two
-    samples, steps [s]: these alone. Raises ValueError.
+    scenes: names of scenes or pages, all if empty. settings: other numbers of these scenes. every: only these numbers
+    of steps between two samples. steps: only these steps [s]. Raises ValueError.
     """
     from reports.cli.run import Selection, run_grid
 
@@ -147,10 +147,10 @@ def search(
     workers: int | None = None,
     results: str | Path = "crosscheck-results",
 ) -> list[CaseResult]:
-    """The checks of random mechanisms in the variants of an engine, all if None, as by `crosscheck search`.
+    """Check random mechanisms in the variants of an engine, or of all if None, like `crosscheck search`.
 
-    seed: the last commit's if None; seconds: begin nothing after these. A store below the folder `results` keeps the
-    cases and the findings, made small. Raises ValueError.
+    seed: that of the last commit if None. seconds: no case starts later. The cases and the shrunk findings are stored
+    in the folder `results`. Raises ValueError.
     """
     from reports.cli.options import SEARCH
     from reports.cli.search import chosen_subjects
@@ -163,9 +163,9 @@ def search(
 def versions(
     engine: str, version: str, scenes: Sequence[str] = (), results: str | Path = "crosscheck-results"
 ) -> VersionColumn:
-    """The rows of scenes, six short ones if none is named, in a release of an engine; pip installs it once.
+    """The rows of scenes in a release of an engine, which pip installs once; six short scenes if none is named.
 
-    Raises ValueError where there is no such release.
+    Raises ValueError if the release does not exist.
     """
     from reports.cli.options import STORE
     from reports.versions.builds import run_release, scenes_named
@@ -181,9 +181,9 @@ def build_comparison(
     scenes: Sequence[str] = (),
     results: str | Path = "crosscheck-results",
 ) -> BuildComparison:
-    """Two builds of an engine, each NAME==VERSION, a wheel or a folder: their rows, and the differences.
+    """The rows and differences of two builds of an engine, each NAME==VERSION, a wheel or a folder.
 
-    Its `complaint` is a sentence if the second is worse, and empty otherwise. Raises ValueError.
+    `complaint` of the result is a sentence if the second build is worse, and empty otherwise. Raises ValueError.
     """
     from reports.versions.builds import compare_builds, scenes_named
 
@@ -198,9 +198,10 @@ def linkage(
     gravity: tuple[float, float] = (0.0, -9.81),
     density: float = 1.0,
 ) -> Mechanism:
-    """Uniform bars between named points [m], pinned where they share one, and to the ground at those of `ground`.
+    """A mechanism at rest of uniform bars between named points [m]; pins connect bars at common points.
 
-    bars: by a bar's name its two ends; density [kg/m]; gravity [m/s^2]. It begins at rest. Raises ValueError.
+    bars: name -> two points. ground: the points that are pinned to the ground. density [kg/m]; gravity [m/s^2]. Raises
+    ValueError.
     """
     from reference.linkage import linkage as made
 
@@ -208,7 +209,7 @@ def linkage(
 
 
 def draw(mechanism: Mechanism, pose: Any = None) -> Picture:
-    """A picture of a mechanism in its start, or in a pose (bodies, 3) [m, m, rad]; `save` writes it as SVG."""
+    """A picture of a mechanism in its initial pose, or in a pose (bodies, 3) [m, m, rad]; `save` writes it as SVG."""
     from reports.check.comparing import draw_mechanism
 
     return draw_mechanism(mechanism, pose)

@@ -1,4 +1,4 @@
-"""What pytest finds of us in any project: the fixture `crosscheck`, and the grid by `-m crosscheck`.
+"""A pytest plugin for any project: the fixture `crosscheck`, and the tests of the grid with `-m crosscheck`.
 
     def test_my_linkage(crosscheck):
         crosscheck.check("linkage.xml", tolerance=1e-4)
@@ -6,9 +6,9 @@
     def test_my_engine(crosscheck):
         crosscheck.conform(MyEngine(), expected_failures={"orders_are_kept": "a known bug, number 12"})
 
-An installation registers this module under pytest11, so every run of pytest imports it: slow imports are
-in functions. `pytest -m crosscheck --scene ... --engine ... --baseline ... --crosscheck-report ...`
-runs the grid from any folder; these options are there only then, since other plugins have such words too.
+Every run of pytest imports this module, which is registered under pytest11, so that slow imports are inside functions.
+`pytest -m crosscheck --scene ... --engine ... --baseline ... --crosscheck-report ...` runs the grid from any folder.
+Without `-m crosscheck` these options do not exist, since other plugins may have options with the same names.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect the grid unless `-m crosscheck` names it: its options and fixtures exist only then."""
+    """Deselect the grid without `-m crosscheck`, since its options and fixtures do not exist then."""
     if config.pluginmanager.has_plugin(PLUGIN):
         return
     grid = [item for item in items if item.get_closest_marker("crosscheck")]
@@ -44,14 +44,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser, args: list[str]) -> None:
-    """`-m crosscheck` brings the grid's options, and the grid where no tests are named. In the checkout it is there."""
+    """With `-m crosscheck`, add the options of the grid, and its tests unless the command line names tests."""
     expression = early_config.known_args_namespace.markexpr or ""
     if not re.search(r"\bcrosscheck\b", expression) or re.search(r"\bnot\s+crosscheck\b", expression):
         return
     _require_ours()
     early_config.pluginmanager.import_plugin(PLUGIN)
     grid_tests = early_config.rootpath / "reports" / "gate" / "grid_tests.py"
-    # The parser knows the grid's options now.
     known_args = parser.parse_known_args(args, namespace=copy.copy(early_config.option))
     if not grid_tests.exists() and not known_args.file_or_dir:
         args += ["--pyargs", GRID]
@@ -66,14 +65,15 @@ def _require_ours() -> None:
 
 
 class Crosscheck:
-    """The fixture `crosscheck`. Models are looked for beside the test's own file, then in the folder of the run."""
+    """The fixture `crosscheck`. Paths of models are relative to the folder of the test file, or else of the run."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
     def check(self, model: Any, tolerance: float = 1e-4, duration: float = 2.0, **terms: Any) -> CheckReport:
-        """Fail the test, with the lines to paste, if a model's own settings miss a tolerance; see
-        `planar_crosscheck.check`, which has the other terms. A model that can't be judged fails it too.
+        """Fail the test if the settings of a model miss the tolerance, or if the model can't be checked.
+
+        The message has the advised settings. `terms` are keyword arguments of `planar_crosscheck.check`.
         """
         from planar_crosscheck import check
         from reports.check.rendering import plain
@@ -87,7 +87,7 @@ class Crosscheck:
         return result
 
     def conform(self, engine: Engine, expected_failures: Mapping[str, str] | None = None) -> None:
-        """Fail the test if an engine does not conform, or if a failure that was expected does not come true."""
+        """Fail the test if an engine does not conform, or if an expected failure does not occur."""
         from planar_crosscheck import conform
 
         _failing(lambda: conform(engine, expected_failures))
@@ -100,11 +100,11 @@ def _failing(call: Callable[[], Any]) -> Any:
         return call()
     except (ValueError, AssertionError) as reason:
         message = str(reason) or repr(reason)
-    pytest.fail(message, pytrace=False)  # outside `except`: pytest would print both errors
+    pytest.fail(message, pytrace=False)  # inside `except`, pytest would print both errors
 
 
 @pytest.fixture
 def crosscheck(request: pytest.FixtureRequest) -> Crosscheck:
-    """Checks models and engines of one's own; see the first lines of planar_crosscheck_pytest.py."""
+    """Checks your models and engines; planar_crosscheck_pytest.py begins with examples."""
     _require_ours()
     return Crosscheck(request.path.parent)

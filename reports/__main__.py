@@ -1,6 +1,6 @@
-"""The program, `crosscheck` or `python -m reports`: it ends with a status and a line, whatever happens.
+"""The program, `crosscheck` or `python -m reports`. Every error ends it with an exit status and one line.
 
-Only what is loaded anyway is imported up here: Ctrl-C is taken care of before anything that takes time.
+Slow modules are imported only after the handler of Ctrl-C is set.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ import sys
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run a command; without arguments, that of the process. Always raises SystemExit, with a status of ending.py."""
+    """Run a command, by default that of the process. Always raises SystemExit with a status of ending.py."""
     program = arguments is None
     status = 130
     try:
         from reports.cli.interruption import ending_at_once, from_now_on_ignored
         from reports.cli.streams import leave_streams, open_streams
 
-        with ending_at_once():  # commands that have something to say of Ctrl-C keep it for themselves
+        with ending_at_once():  # a command may set its own handler of Ctrl-C
             if program:
                 open_streams()
             try:
@@ -33,7 +33,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _ended(arguments: list[str]) -> int:
-    """Run a command; its exit status. What is wrong is told on stderr."""
+    """Run a command and return its exit status; print errors on stderr."""
     from contextlib import suppress
 
     from reports.model.ending import REFUSED, UNREAD, BadInput, Ending, visible
@@ -41,8 +41,8 @@ def _ended(arguments: list[str]) -> int:
     try:
         from planar_crosscheck import clash
 
-        if told := clash():
-            raise BadInput(told)
+        if trouble := clash():
+            raise BadInput(trouble)
         from reports.cli.commands import invoke
 
         return invoke(arguments)
@@ -52,20 +52,20 @@ def _ended(arguments: list[str]) -> int:
         status, sentence = error.status, str(error)
     except OSError as error:
         status, sentence = REFUSED, ": ".join(filter(None, (error.filename, error.strerror or str(error))))
-        if isinstance(error, FileNotFoundError) and error.filename is None:  # of os.getcwd
+        if isinstance(error, FileNotFoundError) and error.filename is None:  # raised by os.getcwd
             sentence = "the current folder was removed; go to one that is there"
     except Exception as error:
-        # Usage errors of the command line's own library: it would print several lines.
-        told = getattr(error, "format_message", None)
-        if told is None:
+        # A usage error of typer, which would print several lines.
+        message = getattr(error, "format_message", None)
+        if message is None:
             raise
-        status, sentence = REFUSED, told()
+        status, sentence = REFUSED, message()
     with suppress(OSError):
         print(f"crosscheck: {visible(' '.join(sentence.split()))}", file=sys.stderr, flush=True)
     return status
 
 
 if __name__ == "__main__":
-    if not sys.flags.safe_path:  # `python -m` has put the current folder first
+    if not sys.flags.safe_path:  # replaces the current folder, which `python -m` puts first
         sys.path[0] = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     main()

@@ -1,6 +1,6 @@
-"""Costs that maintainers follow: runs beside bare loops, a whole grid by part, the judge, commands, and the site.
+"""Measurements of `crosscheck bench`: CPU times of runs and bare loops, of a grid, the judge and commands; the site.
 
-Every time is the least of several runs; nothing is asserted. `crosscheck bench` prints the tables.
+Times of loops, of the judge and of commands are minima of several runs. Nothing is asserted.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from reports.model.spending import taken
 from reports.site.folder import MARKER, compressed_size, server
 
 BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
-TURNS = 7  # of each, alternating, so that a slow period of the machine affects both
+TURNS = 7  # runs of each of two loops, alternating, so that a slow period of the machine affects both
 COMMAND_TURNS = 3
 ROOT = Path(__file__).resolve().parents[1]
-LESSON, SCENE, STEP = "lessons/four_bar.html", 1, 4e-3  # the linkage that is released, which moves for a second [s]
-# The first drawing of a page that has content, as the browser reports it [ms].
+LESSON, LESSON_SCENE, LESSON_STEP = "lessons/four_bar.html", 1, 4e-3  # the free linkage, which moves for 1 s; step [s]
+# The time of the first contentful paint of a page, as the browser reports it [ms].
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
 STEPPED = """async ([scene, step, turns]) => {
   const { ask, form } = window.crosscheck;
@@ -56,7 +56,7 @@ Row = tuple[str, float, str]  # name, value, unit
 
 @dataclass(frozen=True)
 class LoopCost:
-    """CPU seconds per step of `run` and of the bare loop, the least of TURNS each."""
+    """CPU seconds per step of `run` and of the bare loop, each the minimum of TURNS runs."""
 
     engine: Engine
     steps: int
@@ -69,7 +69,7 @@ class LoopCost:
 
 
 def measure_loops(engines: Iterable[Engine], scene: Scene, every: int = 10) -> Iterator[LoopCost]:
-    """Each engine that can build the scene and has a bare loop under `crosscheck.bare_loops`."""
+    """The costs of each engine that can build the scene and has a bare loop (entry points `crosscheck.bare_loops`)."""
     mechanism, dt, steps = scene.mechanism(), scene.spacing / every, scene.samples * every
     loops = registered_by_key("crosscheck.bare_loops", BARE_LOOP)
     for engine in engines:
@@ -86,7 +86,7 @@ def measure_loops(engines: Iterable[Engine], scene: Scene, every: int = 10) -> I
 
 
 def measure_grid(cells: Iterable[Cell]) -> dict[str, dict[str, float]]:
-    """CPU seconds of the cells, run one after the other in this process: by part, by method and by scene."""
+    """CPU seconds of the cells, run sequentially in this process, by part, by method and by scene."""
     out: dict[str, dict[str, float]] = {name: defaultdict(float) for name in ("part", "method", "scene")}
     taken()
     for cell in cells:
@@ -103,10 +103,7 @@ def measure_grid(cells: Iterable[Cell]) -> dict[str, dict[str, float]]:
 
 
 def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -> list[Row]:
-    """CPU time of the judge: of one evaluation, of a second of the free four-bar, of steps of chains.
-
-    Raises BadInput without numba.
-    """
+    """CPU time of the judge: an evaluation, a second of the free four-bar, steps of chains. BadInput without numba."""
     scene = FreeFourBar(duration=1.0)
     mechanism = scene.mechanism()
     model = CompiledModel.of(mechanism) if Lagrange().in_machine_code else None
@@ -132,9 +129,9 @@ def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -
 
 
 def measure_truths(scenes: Iterable[Scene]) -> list[Row]:
-    """CPU seconds of the motions of scenes at all their samples, the largest first; a scene without one is left out.
+    """CPU seconds of the exact motions of scenes at all their samples, the largest first.
 
-    Call it first in a process, since some motions are cached.
+    Call it first in a process, since some motions are cached. Scenes without an exact motion are left out.
     """
     rows = []
     for scene in scenes:
@@ -148,7 +145,7 @@ def measure_truths(scenes: Iterable[Scene]) -> list[Row]:
 
 
 def _measure_evaluation(model: CompiledModel, count: int = 2000) -> float:
-    """CPU seconds of rows, bias, J M^-1 J^T, its factor, reactions and accelerations at the start."""
+    """CPU seconds of one evaluation of the reactions and accelerations at the initial state."""
     poses, twists = model.empty_samples(count)
     poses[:], twists[:] = poses[0], twists[0]
     begin = time.process_time()
@@ -163,11 +160,11 @@ def _least(seconds: Callable[[], float], turns: int) -> float:
 
 @dataclass(frozen=True)
 class CommandCost:
-    """Seconds of the quickest of COMMAND_TURNS runs of a command in an empty folder; `wall` by the clock."""
+    """The fastest of COMMAND_TURNS runs of a command, each in an empty folder."""
 
     words: tuple[str, ...]
-    wall: float
-    cpu: float
+    wall: float  # s of wall time
+    cpu: float  # s
     status: int
 
 
@@ -192,7 +189,7 @@ def measure_command(words: Sequence[str]) -> CommandCost:
 
 
 def measure_site(folder: Path) -> list[Row]:
-    """Sizes of a site, and times of its first page and of a lesson in Chromium; BadInput where a part is missing."""
+    """Sizes of a site, and times of its first page and of a lesson in Chromium. BadInput without browser or site."""
     if not (folder / MARKER).is_file():
         raise BadInput(f"{folder} has no site: `crosscheck site` writes one")
     contents = {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
@@ -226,10 +223,10 @@ def _measure_pages(browser: Any, address: str) -> list[Row]:
         lesson.goto(address + LESSON)
         lesson.wait_for_selector("#lesson.ready")
         ready = lesson.evaluate("performance.now()") / 1000
-        stepped = lesson.evaluate(STEPPED, [SCENE, STEP, 25])
+        stepped = lesson.evaluate(STEPPED, [LESSON_SCENE, LESSON_STEP, 25])
     finally:
         browser.close()
-    name = f"site: a second of the four-bar in steps of {1e3 * STEP:g} ms by"
+    name = f"site: a second of the four-bar in steps of {1e3 * LESSON_STEP:g} ms by"
     return [
         ("site: first picture of the first page", page.evaluate(PAINTED) / 1000, "s"),
         ("site: engines of a lesson ready", ready, "s"),

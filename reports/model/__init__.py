@@ -1,1 +1,1 @@
-"""Cells, tasks, outcomes, quantities, rows and their measurement, and the parts of a page."""
+"""The data of the suite: cells, tasks, outcomes, quantities and rows; how rows are measured; the parts of a page."""

@@ -1,9 +1,8 @@
-"""Registered pages and scenes, those of this suite among them, and a generic page for a scene without one.
+"""The registered pages and scenes, and a generic page for each scene without one.
 
-A distribution registers under `crosscheck.scenes` a scene, or a tuple or list of scenes; under `crosscheck.pages` a
-page (`reports.model.page.Page`), or a tuple or list of pages. A page shows the scenes that it names, whether they are
-registered or not. This suite's entry points are in pyproject.toml, which also
-defines the order of its pages.
+An entry point of the group `crosscheck.scenes` is a scene, or a tuple or list of scenes. One of `crosscheck.pages` is a
+page (`reports.model.page.Page`), or a tuple or list of pages; its scenes need not be registered. The entry points of
+this suite are in pyproject.toml, in the order of the pages.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")  # characters that names of files
 
 
 def _no_scene(value: Any) -> str:
-    """Why a value is no scene, a clause; empty if it is one."""
+    """The reason why a value is not a valid scene, as a clause; empty if it is."""
     if isinstance(value, type):
         return f"it is a class; give a scene made of it, {value.__name__}()"
     if not isinstance(value, Scene):
@@ -48,7 +47,7 @@ def _no_scene(value: Any) -> str:
 
 
 def _by_defaults(cls: type) -> Scene | None:
-    """A scene with its default numbers; None for another class, and for a scene without a default for every number."""
+    """A scene of this class with its default numbers; None for a class that is no scene or has a required number."""
     if not (issubclass(cls, Scene) and is_dataclass(cls)) or inspect.isabstract(cls):
         return None
     if not isinstance(getattr(cls, "name", None), str):
@@ -64,12 +63,12 @@ _pages = registered("crosscheck.pages", PAGE, lambda page: page.name)
 
 
 def page_of(scene: Scene, pages: Sequence[Page] | None = None) -> Page | None:
-    """The page that teaches a scene, of all unless some are given; None for a scene from elsewhere."""
+    """The page that teaches a scene, from `pages` or, if None, from PAGES; None if there is none."""
     return next((page for page in (PAGES if pages is None else pages) if page.teaches(scene)), None)
 
 
 def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:
-    """A page that shows all rows of a scene; its name is chosen so that its document is not in `taken`."""
+    """A page that shows all rows of a scene; the name of its document is not in `taken`."""
     stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
     summary = " ".join((type(scene).__doc__ or "").split("\n\n")[0].split())
     page = Page(stem, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))
@@ -81,7 +80,7 @@ def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] =
 
 
 def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequence[Engine]) -> tuple[Page, ...]:
-    """The pages, and a generic one with these engines for each scene that none of them teaches."""
+    """The pages, and a generic page with these engines for each scene that none of them teaches."""
     out = list(pages)
     for scene in scenes:
         if page_of(scene, out) is None:
@@ -90,7 +89,7 @@ def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequenc
 
 
 def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page, ...]:
-    """The pages; those that compare engines also compare these engines and show them in their charts."""
+    """The pages; those that compare engines are extended by these engines, also in charts."""
     added = {method_name(engine) for engine in engines}
 
     def extended(page: Page) -> Page:

@@ -1,6 +1,6 @@
-"""A cell is one scene in one engine variant at one step; the grids say which cells are run.
+"""A cell is one scene in one engine variant at one step. This module also defines which cells are run.
 
-The grid of sweeps has half decades of the step; `usual_cells` are at the steps that people use, which these miss.
+The steps of a sweep are half a decade apart; `usual_cells` have the steps that users choose.
 """
 
 from __future__ import annotations
@@ -19,52 +19,50 @@ from reports.model.fingerprint import LONG, digest, fingerprint
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
-# Steps per sampling interval, half a decade apart: the one rule by which steps are chosen. With samples 1e-2 s apart
-# they are about 1e-2, 3e-3, 1e-3 ... 3e-5 s. At least three points are needed to distinguish a slope from a plateau.
+# Steps per sampling interval. With samples 1e-2 s apart the steps are about 1e-2, 3e-3, 1e-3 ... 3e-5 s. At least three
+# points are needed to distinguish a slope from a plateau.
 QUICK = (1, 3, 10)
 FULL = (1, 3, 10, 30, 100, 300)
 
-# A step, the coarsest apart, is left out when one run would take about this long [s]. The estimate is fixed, not
-# measured, so that the grid (and errors.csv) is the same on every machine.
+# The largest estimated CPU time [s] of a cell of a sweep, except for the coarsest step. The estimate is not a
+# measurement, so that the grid and errors.csv are the same on every machine.
 COST_LIMIT = 0.8
-# Beyond QUICK, finer steps end where the promised order has divided the coarsest one's error by this: the rest is then
-# rounding, or no error of the step. So methods of order 4 get five steps, those of order 6 and more three.
+# A step finer than those of QUICK is left out if the declared order has already divided the error by this factor at a
+# coarser step, since the remaining error is rounding. So methods of order 4 have five steps, of order 6 or more three.
 DIVIDED = 1e8
-BESIDE_LIMIT = 0.5  # s, building included: longest cell of an engine that is an extra
-SLOW_TO_BUILD = 1.0  # s: a model that takes longer to build is run only in experiments of pages, and in no grid
+BESIDE_LIMIT = 0.5  # s; longest cell of an engine that is an extra
+SLOW_TO_BUILD = 1.0  # s; an engine that needs longer to build a model runs only in experiments of pages
 
-# Steps [s] by their printed form: a frame of a screen, as in pymunk's examples; MuJoCo's default; half of it.
+# Printed form -> step [s]: a frame of a screen, as in pymunk's examples; MuJoCo's default; half of this default.
 USUAL_STEPS = {"1/60 s": 1 / 60, "2 ms": 2e-3, "1 ms": 1e-3}
-# Steps that differ by less than this share are one: a scene's time is a whole number of steps, so that 1/60 s may be a
-# little less there. At order 4 an error differs by four times as much, which two printed digits show just so.
-SAME = 0.01
-# The methods that the overview and the charts show: an engine as shipped, by documented settings, and with code around
-# it; ideal constraints at order 1 and 4.
+# Steps with a smaller relative difference count as equal, since the duration of a scene is a whole number of steps. At
+# order 4 the error then differs by at most 4 %.
+SAME_STEP = 0.01
+# Variants in the overview and in charts: an engine's defaults, its documented settings, and with code of this suite;
+# ideal constraints at order 1 and 4.
 FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
-SHOWN = 3  # variants of an engine that has none of these: more columns than others have would be unreadable
-# A step that is the habit of one engine's users: other engines that have such a step of their own are not run at it.
+MOST_VARIANTS = 3  # in the overview and in charts, for an engine without a variant in FEATURED
+# Printed form of a step -> the engine whose users choose it; engines with another such step do not run it.
 HABITS = {"1/60 s": "pymunk", "2 ms": "mujoco"}
-OURS = (
+OWN_VARIANTS = (
     "extended",
     "euler projection",
     "rk4 projection",
-)  # variants with code of this suite, so that users have no habit
+)  # with code of this suite, so that no user chooses a step
 
 
 @dataclass(frozen=True)
 class Cell(Valid):
-    """A scene in an engine with `every` steps between samples; `samples` replaces the scene's own number if given.
+    """A scene in an engine at one step. Raises ValueError unless both counts are positive integers.
 
-    Scenes and engines are frozen dataclasses, so a cell can be pickled for a worker process. Cells that differ only
-    in `purpose` are equal: an experiment at a step of the sweep uses the sweep's row.
-    Raises ValueError unless both counts are whole numbers above zero.
+    Cells that differ only in `purpose` are equal, so that an experiment at a step of the sweep uses the sweep's row.
     """
 
     scene: Scene
     engine: Engine
-    every: Count
+    every: Count  # steps between two samples
     purpose: Purpose = field(default="sweep", compare=False)
-    samples: Count | None = None
+    samples: Count | None = None  # number of sampling intervals; that of the scene if None
 
     @property
     def sample_count(self) -> int:
@@ -72,7 +70,7 @@ class Cell(Valid):
 
     @property
     def step(self) -> float:
-        """The engine's step [s]."""
+        """The step of the engine [s]."""
         return self.scene.duration / self.sample_count / self.every
 
     @property
@@ -81,7 +79,7 @@ class Cell(Valid):
 
     @cached_property
     def key(self) -> str:
-        """A digest of all that the result depends on; equal keys mean that a stored result still holds."""
+        """A digest of everything on which the result depends: a stored result with the same key is valid."""
         parts = (
             self.scene.name,
             repr(self.scene),
@@ -97,23 +95,23 @@ class Cell(Valid):
 
     @cached_property
     def truth(self) -> str:
-        """A digest of all that the scene's exact motion depends on, but for the instants (`measure.exact_motion`)."""
+        """A digest of everything on which the exact motion depends, except the instants (`measure.exact_motion`)."""
         sources = fingerprint(self.scene, folders=("reference",))
         parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
         return digest("\0".join(parts), LONG)
 
 
-_fingerprint = lru_cache(maxsize=4096)(fingerprint)  # a scene in an engine has a cell for every step
+_fingerprint = lru_cache(maxsize=4096)(fingerprint)  # shared by the cells of a scene in an engine at all steps
 
 
 def estimated_cost(cell: Cell) -> float:
-    """About how long one run takes [s], by the engine's own formula; deliberately not a measurement."""
-    # To a nanosecond: which side of a limit a cell is on is not to be decided by rounding.
+    """Estimated CPU time of one run [s] by the engine's formula, which does not depend on the machine."""
+    # Rounded to a nanosecond, so that rounding does not decide whether a cell exceeds a limit.
     return round(cell.sample_count * cell.every * _step_cost(cell.scene, cell.engine), 9)
 
 
 def estimated_seconds(cell: Cell) -> float:
-    """`estimated_cost` and the time to build a model [s], as the engine declares it."""
+    """`estimated_cost` plus the engine's declared time to build a model [s]."""
     return estimated_cost(cell) + cell.engine.build_time
 
 
@@ -134,7 +132,7 @@ def _call(engine: Engine, method: str, scene: Scene, convert: Callable[[Any], An
 
 @lru_cache(maxsize=512)
 def mechanism_of(scene: Scene) -> Mechanism:
-    """The scene's mechanism, cached: cells, tables and pictures need it hundreds of times."""
+    """The scene's mechanism, cached, since cells, tables and pictures need it hundreds of times."""
     return scene.mechanism()
 
 
@@ -145,10 +143,9 @@ def sweep_cells(
     cost_limit: float = COST_LIMIT,
     divided: float = DIVIDED,
 ) -> tuple[Cell, ...]:
-    """Every scene in every engine at every number of steps per sample, cheap steps first.
+    """The cells of all scenes in all engines at these numbers of steps per sample, coarse steps first.
 
-    The coarsest step is always there, the other QUICK ones while their estimated cost stays below COST_LIMIT; finer
-    ones while it stays below `cost_limit`, and the promised order has divided the error by no more than `divided`.
+    The coarsest step is always included. The other cells are left out for the reasons of `too_much`.
     """
     engines, scenes, steps = tuple(engines), tuple(scenes), sorted(steps)
     cells = [Cell(scene, engine, every) for every in steps for scene in scenes for engine in engines]
@@ -156,8 +153,9 @@ def sweep_cells(
 
 
 def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False) -> tuple[Cell, ...]:
-    """Cells of engines outside a scene's grid, which its page shows beside it: each at the finest of the QUICK steps
-    that is cheap enough; with `sweep` at all that are.
+    """Cells of engines outside the grid at QUICK steps that take at most BESIDE_LIMIT: all with `sweep`, else one.
+
+    Without `sweep` only the finest such step is run.
     """
     engines = tuple(engine for engine in engines if engine.build_time < SLOW_TO_BUILD)
     out: list[Cell] = []
@@ -170,7 +168,7 @@ def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool
 
 
 def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDED) -> str:
-    """Why a sweep leaves a step out that is not its coarsest; empty if it does not."""
+    """The reason why a sweep leaves out a step that is not its coarsest; empty if it is run."""
     cost = estimated_cost(cell)
     most = max(cost_limit, COST_LIMIT) if cell.every <= max(QUICK) else cost_limit
     if cost > most:
@@ -188,33 +186,30 @@ def _promised_order(scene: Scene, engine: Engine) -> float:
 
 
 def is_step(step: float, wanted: float) -> bool:
-    """Whether a step [s] is printed as this one."""
-    return abs(step - wanted) <= SAME * wanted
+    """Whether two steps [s] count as equal."""
+    return abs(step - wanted) <= SAME_STEP * wanted
 
 
 def usual_variants(methods: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
-    """Engine -> its variants in FEATURED, in that order, or its first ones where it has none of them.
-
-    `methods` are (engine, variant).
-    """
+    """Engine -> its variants in FEATURED in that order, or its first MOST_VARIANTS; `methods` are (engine, variant)."""
     variants: dict[str, dict[str, None]] = {}
     for engine, variant in methods:
         variants.setdefault(engine, {})[variant] = None
     return {
-        engine: tuple(name for name in FEATURED if name in names) or tuple(names)[:SHOWN]
+        engine: tuple(name for name in FEATURED if name in names) or tuple(names)[:MOST_VARIANTS]
         for engine, names in variants.items()
     }
 
 
 def is_run_at(name: str, engine: str, variant: str) -> bool:
-    """Whether a method is run at the usual step of this name."""
+    """Whether a method is run at the step of USUAL_STEPS with this printed form."""
     if name not in HABITS:
         return True
-    return variant not in OURS and (HABITS[name] == engine or engine not in HABITS.values())
+    return variant not in OWN_VARIANTS and (HABITS[name] == engine or engine not in HABITS.values())
 
 
 def usual_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
-    """The engines' usual variants at USUAL_STEPS, where the sweep has no such step and a run does not take too long."""
+    """The usual variants of the engines at USUAL_STEPS, without steps of the sweep and without long runs."""
     engines = tuple(engines)
     usual = usual_variants((engine.name, engine.variant) for engine in engines)
     chosen = [engine for engine in engines if engine.variant in usual[engine.name]]
@@ -226,7 +221,7 @@ def _cells(scene: Scene, engine: Engine) -> Iterator[Cell]:
         if not is_run_at(name, engine.name, engine.variant):
             continue
         every = max(1, round(scene.spacing / step))
-        if not is_step(scene.spacing / every, step):  # then with samples at other times
+        if not is_step(scene.spacing / every, step):  # the step does not divide the sampling, so the sampling changes
             cell = Cell(scene, engine, every, "usual", samples=max(1, round(scene.duration / (every * step))))
         elif every not in FULL:
             cell = Cell(scene, engine, every, "usual")

@@ -1,4 +1,4 @@
-"""A check is a measured number held below a bound: every gate of the grid gives checks, every report prints them."""
+"""A check compares a measured number with a bound. The gates of the grid produce checks, and reports print them."""
 
 from __future__ import annotations
 
@@ -12,28 +12,25 @@ from reports.model.quantities import QUANTITIES
 CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
 CHANGE = "change"  # the check against a baseline, which no known deviation excuses
 BEGINNINGS = ("upstream:", "by design:", "ours:")
-WORSE_DEVIATION = 2.0  # times the stated deviation: a larger one fails
-BACK = 0.5  # of the bound: a known deviation below this no longer occurs, which fails too
-ROUNDED = 10.0  # times the stated one for roundings that the motion amplifies; another processor gave 2 and 1/17
+WORSE_DEVIATION = 2.0  # times the known deviation; a larger one fails
+BACK = 0.5  # of the bound; a known deviation below this value no longer occurs, which fails too
+ROUNDED = 10.0  # times the known deviation, if it consists of amplified rounding; another processor gave 2 and 1/17
 
 
 @dataclass(frozen=True)
 class Check:
-    """`measured` must not exceed `bound`; `terms`: the summands of the bound by name, in its unit.
+    """The assertion that `measured` does not exceed `bound`."""
 
-    `name`: one of CHECKS, or "change"; `quantity`: the field of the Measurement.
-    """
-
-    name: str
-    quantity: str
+    name: str  # one of CHECKS, or "change"
+    quantity: str  # the field of the Measurement
     measured: float
     bound: float
-    terms: tuple[tuple[str, float], ...] = ()
+    terms: tuple[tuple[str, float], ...] = ()  # (name, summand of the bound)
     sentence: str = ""
 
     @property
     def nearness(self) -> float:
-        """measured / bound: above 1 the check fails; infinite for NaN and infinity."""
+        """measured / bound, which is above 1 if the check fails; infinite if `measured` is not finite."""
         if not math.isfinite(self.measured):
             return math.inf
         return self.measured / self.bound if self.bound > 0 else (math.inf if self.measured > 0 else 0.0)
@@ -50,17 +47,12 @@ class Check:
 
 @dataclass(frozen=True)
 class Deviation:
-    """A check that a method is known to miss.
+    """A check that a method is known to fail, with either a factor or an outcome. Raises ValueError."""
 
-    reason: begins with whose it is: "upstream:", "by design:" or "ours:". Either factor, how many times its bound it
-    takes at most, or the known outcome. rounding: the error is made of roundings that the motion amplifies, so that
-    another processor has another one: up to ROUNDED times as large, or none at all. Raises ValueError.
-    """
-
-    reason: str
-    factor: float | None = None
-    outcome: Outcome | None = None
-    rounding: bool = False
+    reason: str  # begins with "upstream:", "by design:" or "ours:"
+    factor: float | None = None  # largest measured / bound
+    outcome: Outcome | None = None  # the known outcome
+    rounding: bool = False  # the error is amplified rounding, so that it may differ by ROUNDED on another processor
 
     def __post_init__(self) -> None:
         if not self.reason.startswith(BEGINNINGS):
@@ -79,14 +71,14 @@ class Deviation:
 
 
 def nearest(checks: Iterable[Check]) -> Check:
-    """The check that comes nearest to its bound, or goes farthest beyond it. Raises ValueError without any."""
+    """The check with the largest ratio of measured value to bound. Raises ValueError without checks."""
     return max(checks, key=lambda check: check.nearness)
 
 
 def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome: str = "") -> tuple[str, ...]:
-    """Sentences about unexpected failures, known deviations that grew, and those that no longer occur.
+    """Sentences about unexpected failures, and about known deviations that became larger or no longer occur.
 
-    `outcome`: of the run that is checked, which has to be the one that is known.
+    `outcome`: that of the checked run, which must be the known outcome of a deviation.
     """
     out: list[str] = []
     checks = tuple(checks)

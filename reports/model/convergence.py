@@ -17,12 +17,12 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, Quantity
 
-ROOM_SOFT = 2.0  # times the error of the declared softness, whose estimate of a row's inertia is right within this
-FLAT = 0.35  # a local slope below this is no convergence: half a decade of steps then wins less than a factor 1.5
-ENOUGH_POINTS = 3  # fewest points that carry an order; two give a slope and nothing to check it by
-ROUNDING_GROWTH = 100.0  # rounding may grow so much after it was met: the finest steps are so many times as many
-NEAR_PLATEAU = 3.0  # an error within this factor of the plateau is the sum of both, and its slope is neither
-POWERS = (0.5, 8.0)  # of the step with which an error may come to its limit: from the root of a kink to order 8
+ROOM_SOFT = 2.0  # times the error of the declared softness: the accuracy of its estimate of a row's inertia
+FLAT = 0.35  # a smaller local slope is no convergence: half a decade of steps reduces the error by less than 1.5
+ENOUGH_POINTS = 3  # fewest points for an order; two points give a slope but no check of it
+ROUNDING_GROWTH = 100.0  # rounding may grow by this factor at finer steps, as the number of steps does
+NEAR_PLATEAU = 3.0  # an error within this factor of the plateau is not used for the order
+POWERS = (0.5, 8.0)  # smallest and largest power of the step with which an error may approach its limit
 
 
 class Verdict(StrEnum):
@@ -50,7 +50,7 @@ class Fit(NamedTuple):
 
 @dataclass(frozen=True)
 class Sweep:
-    """One quantity of one scene in one engine variant, over all steps that ended without failing (see Fit)."""
+    """The behaviour (`Fit`) of a quantity of a scene in an engine variant over all comparable steps."""
 
     scene: str
     engine: str
@@ -71,19 +71,19 @@ class Sweep:
 
     @property
     def lucky(self) -> bool:
-        """Whether the smallest error is far below the plateau: there two errors cancel, at that step alone."""
+        """Whether the smallest error is far below the plateau, since two errors cancel at that step."""
         return self.verdict is Verdict.PLATEAU and self.best < self.plateau / 2
 
 
 def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Slopes of log error over log step between neighbours, steps descending."""
+    """Slopes of log error over log step between neighbouring steps."""
     return np.diff(np.log(errors)) / np.diff(np.log(steps))
 
 
 def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit:
     """The behaviour of these errors as the step [s] goes to zero. Errors that are not finite are left out.
 
-    An error at or below `rounding` is rounding, whatever it does there.
+    An error at or below `rounding` counts as rounding.
     """
     return _fit(
         tuple(sorted(((h, e) for h, e in zip(steps, errors, strict=True) if math.isfinite(e)), reverse=True)), rounding
@@ -96,7 +96,7 @@ def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
     if not pairs:
         return Fit(Verdict.TOO_FEW)
     first = next((index for index, (_, e) in enumerate(pairs) if e <= rounding), len(pairs))
-    # After it has met rounding an error may grow again, as rounding does with the number of steps; not by much more.
+    # At finer steps rounding may grow again with the number of steps, but not by more than ROUNDING_GROWTH.
     reaches = first < len(pairs) and pairs[-1][1] <= ROUNDING_GROWTH * rounding
     above = list(pairs[:first]) if reaches else [(h, e) for h, e in pairs if e > rounding]
     if len(above) < 2:
@@ -114,12 +114,12 @@ def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
         return Fit(Verdict.FALLS, order, points, spread)
     if slopes[-1] < -FLAT and (len(slopes) == 1 or slopes[-2] < FLAT):
         return Fit(Verdict.GROWS, order, points, spread)
-    # One flat interval alone may be a crossing of signs; two would have been a plateau.
+    # A single flat interval may be a change of sign of the error; two flat intervals would be a plateau.
     return Fit(Verdict.LEVELS if slopes[-1] > -FLAT else Verdict.ERRATIC, order, points, spread)
 
 
 def _longest_run(mask: np.ndarray) -> tuple[int, int]:
-    """(start, stop) of the longest run of true values, the finest of equals."""
+    """(start, stop) of the longest run of true values; the last one if several are equally long."""
     best, start = (0, 0), None
     for index, value in enumerate([*mask, False]):
         if value and start is None:
@@ -132,10 +132,10 @@ def _longest_run(mask: np.ndarray) -> tuple[int, int]:
 
 
 def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
-    """(limit, uncertainty) of errors that end flat, NaN of others: the last two intervals (or the only two) are flat.
+    """(limit, uncertainty) of errors whose last two intervals are flat; NaN for other errors.
 
-    One flat interval is enough where errors rise to it and rise less and less: an error that went through zero, as two
-    errors cancelled, and comes to the limit from below.
+    One flat interval suffices if the errors rise to a limit from below, after two errors have cancelled at a coarser
+    step.
     """
     if len(errors) < 3 or abs(slopes[-1]) > FLAT:
         return NAN, NAN
@@ -145,10 +145,10 @@ def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple
 
 
 def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
-    """(limit, uncertainty, whether errors settle) of the three finest points, by limit + factor * step ** power.
+    """(limit, uncertainty, whether it converges) of the three finest points by limit + factor * step ** power.
 
-    Where no power of POWERS passes through all three (they go up and down, or change more and more), the limit is the
-    finest error and the uncertainty its largest difference from the two others.
+    If no power within POWERS passes through all three points, the limit is the error at the finest step, and the
+    uncertainty is its largest difference from the other two errors.
     """
     before, last = errors[0] - errors[1], errors[1] - errors[2]
     if last and before / last > 0:
@@ -168,7 +168,7 @@ def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
 def _order(
     steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray, run: tuple[int, int], plateau: float
 ) -> tuple[float, int, float]:
-    """Least squares over the falling run, without steps too coarse for the slope and errors near the plateau."""
+    """(order, points, spread) by least squares over the falling run, without coarse outliers and the plateau."""
     start, stop = run[0], run[1] + 1
     if run[0] == run[1]:
         return NAN, 0, NAN
@@ -183,7 +183,7 @@ def _order(
 
 
 def groups(rows: Iterable[Measurement]) -> dict[tuple[str, str, str], list[Measurement]]:
-    """The rows of sweeps by (scene, engine, variant), each from coarse to fine, in the order of their first row."""
+    """(scene, engine, variant) -> rows of the sweep, from coarse to fine steps."""
     members: dict[tuple[str, str, str], list[Measurement]] = {}
     for row in rows:
         if row.purpose == "sweep":
@@ -192,7 +192,7 @@ def groups(rows: Iterable[Measurement]) -> dict[tuple[str, str, str], list[Measu
 
 
 def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTITIES) -> tuple[Sweep, ...]:
-    """Every quantity of every group of rows."""
+    """The sweeps of these quantities in the groups of the rows."""
     quantities = tuple(quantities)
     out = []
     for (scene, engine, variant), members in groups(rows).items():
@@ -206,7 +206,7 @@ def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTIT
 
 
 def by_method(found: Iterable[Sweep], quantity: str) -> Mapping[tuple[str, str, str], Sweep]:
-    """The sweeps of one quantity by (scene, engine, variant)."""
+    """(scene, engine, variant) -> sweep of the quantity."""
     return {(s.scene, s.engine, s.variant): s for s in found if s.quantity.name == quantity}
 
 

@@ -1,4 +1,4 @@
-"""How the program ends: its exit statuses, and the exceptions that become one line on stderr."""
+"""The exit statuses of the program, and the exceptions that are printed as one line on stderr."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import ClassVar
 
-LONGEST = 500  # characters of a sentence
+LONGEST_MESSAGE = 500  # characters of the description of an exception
 FINE = 0
 BROKEN = 1
 REFUSED = 2
@@ -28,7 +28,7 @@ class Ending(Exception):
 
 
 class Broken(Ending):
-    """Something ran but is broken; the message names it and the reason."""
+    """A run or a check failed; the message names it and the reason."""
 
     status = BROKEN
 
@@ -49,9 +49,9 @@ NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
 
 
 def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str] = NONE_ABSENT) -> BadInput:
-    """The refusal of an unknown word, with the nearest known one if any is near, in capitals or not.
+    """The error about an unknown word, with the nearest known one if any is similar, regardless of case.
 
-    `absent`: names that are known and can't be had here, each with the sentence that says how they can.
+    `absent`: name -> a sentence on how to install it, for known names that are not available here.
     """
     names = {name.lower(): name for name in (*known, *absent)}
     low = word.lower()
@@ -65,9 +65,7 @@ def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str
 
 
 def visible(text: str) -> str:
-    """A text with escapes for the characters that a terminal obeys or that turn the direction of a line; names of
-    files may hold them.
-    """
+    """The text with escapes for characters that control a terminal or the direction of text, as in names of files."""
     if text.isprintable():
         return text
     return "".join(
@@ -82,4 +80,4 @@ def describe(error: BaseException) -> str:
         message = str(error)
     except Exception:
         message = "(it can't be printed)"
-    return f"{type(error).__name__}: {message}"[:LONGEST].encode("utf-8", "replace").decode("utf-8")
+    return f"{type(error).__name__}: {message}"[:LONGEST_MESSAGE].encode("utf-8", "replace").decode("utf-8")

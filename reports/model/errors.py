@@ -1,4 +1,4 @@
-"""A trajectory held against the truth at the same instants: plain numbers, NaN where there is nothing to compare."""
+"""Errors of a trajectory relative to the exact motion at the same instants; NaN for a quantity without any."""
 
 from __future__ import annotations
 
@@ -14,39 +14,38 @@ NAN = float("nan")
 
 
 def largest(values: Array) -> float:
-    """The largest absolute value that is a number; NaN if none is."""
+    """The largest absolute value, without NaN; NaN if there is no other value."""
     values = np.abs(np.asarray(values, dtype=float))
     values = values[~np.isnan(values)]
     return float(values.max()) if values.size else NAN
 
 
 def root_mean_square(values: Array) -> float:
-    """Over all entries that are numbers; NaN if none is."""
+    """The root mean square without NaN; NaN if there is no other value."""
     values = np.asarray(values, dtype=float)
     values = values[~np.isnan(values)]
     return float(np.sqrt(np.mean(values**2))) if values.size else NAN
 
 
 def usable_samples(trajectory: Trajectory) -> int:
-    """How many samples from the start are finite throughout."""
+    """The number of samples before the first one that is not finite."""
     finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))
     return len(trajectory.t) if np.all(finite) else int(np.argmin(finite))
 
 
 def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str, float]:
-    """What needs no truth: `gap` [m], `drive_gap` [rad] and `slip` [m/s or rad/s], the largest over the samples."""
+    """The largest `gap` [m], `drive_gap` [rad] and `slip` [m/s or rad/s] of the constraints."""
     turning = mechanism.is_angular
     gap, speed = joint_gap(mechanism, trajectory), slip(mechanism, trajectory)
     return {"gap": largest(gap[:, ~turning]), "drive_gap": largest(gap[:, turning]), "slip": largest(speed)}
 
 
 def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, trajectory: Trajectory) -> dict[str, float]:
-    """Errors within the scene's horizon, and `angle_duration` over the whole duration, for finite samples.
+    """Errors within the scene's horizon, and `angle_duration` over the whole duration.
 
-    position [m], angle [rad], velocity [m/s], rate [rad/s]: the largest over samples and bodies; `_rms` likewise.
-    energy: largest difference from the truth's energy, relative to the truth's largest kinetic energy, so that it is
-    the drift of a free motion, means something in a driven one, and does not depend on where height is counted from.
-    reaction: relative to the largest true reaction of its kind (forces, torques).
+    position [m], angle [rad], velocity [m/s], rate [rad/s]: the largest over samples and bodies, and root mean squares.
+    energy: the largest difference from the exact energy, relative to the largest exact kinetic energy. This is also
+    defined for a driven motion, and does not depend on the reference height.
     """
     within = trajectory.t <= scene.horizon * (1 + 1e-12)
     pose, twist = trajectory.pose - truth.pose, trajectory.twist - truth.twist
@@ -68,7 +67,7 @@ def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, traject
 
 
 def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float:
-    """Largest error over the rows that both know (times, rows), relative to the largest true reaction of its kind."""
+    """Largest error of the known reactions (times, rows), relative to the largest exact force or moment."""
     turning = mechanism.is_angular
     worst = [NAN]
     for rows in (turning, ~turning):
@@ -79,7 +78,7 @@ def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float
 
 
 def branch_flips(scene: Scene, truth: Trajectory, trajectory: Trajectory) -> int:
-    """How often the assembly mode changes when the truth's does not (or the other way round)."""
+    """The number of changes of the assembly mode relative to that of the exact motion."""
     agreement = scene.branch_of(trajectory.pose) * scene.branch_of(truth.pose)
     agreement = np.concatenate([[1], agreement[agreement != 0]])
     return int(np.sum(agreement[1:] != agreement[:-1]))

@@ -1,8 +1,7 @@
 """The cache key of results: a digest of the source files and installed versions that they depend on.
 
-Stored results are used only while these are unchanged. All sources in MEASURING count together; answers
-to tasks depend on all of OURS. A third party's module counts by its version if it is installed, else by the files of
-its package or folder.
+A row depends on all sources in MEASURING, the answer to a task on all sources in OURS. A module of a third party counts
+by its version if it is installed, else by the files of its package or folder.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ def fingerprint(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
 
 
 def versions_of(*values: Any, folders: tuple[str, ...] = MEASURING) -> dict[str, str]:
-    """By name: versions of distributions and of Python, digests of files."""
+    """Name -> version of each distribution and of Python, and digests of source files."""
     modules, packages = set[str](), set[str]()
     for value in _parts(values):
         kinds = (*(value if isinstance(value, type) else type(value)).__mro__, *((value,) if callable(value) else ()))
@@ -63,21 +62,21 @@ def _versions(modules: frozenset[str], packages: frozenset[str], folders: tuple[
             distributions.update(_distributions().get(module, ()))
     for name in sorted(with_required(distributions | _rivals(packages))):
         versions[name] = metadata.version(name)
-    for name in packages:  # of npm too
+    for name in packages:  # also packages of npm
         with suppress(metadata.PackageNotFoundError):
             versions.setdefault(normalised(name), installed_version(name))
     return {**versions, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}
 
 
 def _rivals(packages: Iterable[str]) -> set[str]:
-    """Distributions with a module of one of these: a release that is first on the path may have another name."""
+    """Distributions that share a module with one of these, such as a release under another name."""
     named = {normalised(name) for name in packages}
     holders = [set(map(normalised, names)) for names in _distributions().values()]
     return {name for names in holders if names & named for name in names}
 
 
 def _parts(values: Iterable[Any]) -> Iterator[Any]:
-    """These values, and all that their fields and containers hold."""
+    """These values, and recursively the values in their fields and containers."""
     for value in values:
         yield value
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
@@ -89,10 +88,10 @@ def _parts(values: Iterable[Any]) -> Iterator[Any]:
 
 
 def _files(module: str) -> tuple[Path, ...]:
-    """The files of a top-level module that is not installed: of its package, or of its folder; and data they name."""
+    """The sources of a top-level module that is not installed, and files whose names occur in them; else empty."""
     try:
         spec = find_spec(module)
-    except (ImportError, ValueError):  # a module that was made by hand
+    except (ImportError, ValueError):  # a module without a spec
         spec = None
     if spec is None or not (spec.submodule_search_locations or spec.origin):
         return ()
@@ -108,7 +107,7 @@ def _files(module: str) -> tuple[Path, ...]:
 
 @cache
 def _our_files(folders: tuple[str, ...]) -> str:
-    """A digest of our sources: a checkout in another folder has the same."""
+    """A digest of our sources, which does not depend on the folder of the checkout."""
     paths = (sorted((ROOT / folder).rglob(pattern)) for folder in folders for pattern in ("*.py", "*.mjs"))
     return _content(path for group in paths for path in group)
 
@@ -123,10 +122,9 @@ def _distributions() -> Mapping[str, list[str]]:
 
 
 def with_required(distributions: Iterable[str]) -> set[str]:
-    """The distributions and all that they require, directly or not, as far as it is installed; normalised names.
+    """Normalised names of the distributions and of all installed distributions that they require.
 
-    pymunk calls its engine through cffi, which no file of this suite imports. A package that only an extra requires is
-    left out, since it may be installed without being used.
+    A package that only an extra requires is left out, since it may be installed without being used.
     """
     names: set[str] = set()
     waiting = list(distributions)
@@ -140,7 +138,7 @@ def with_required(distributions: Iterable[str]) -> set[str]:
 
 @cache
 def _required(name: str) -> tuple[str, ...] | None:
-    """The requirements of an installed distribution; None if it is not installed: it is for other systems only."""
+    """The requirements of a distribution; None if it is not installed, for example since it is for another system."""
     try:
         requirements = metadata.requires(name) or []
     except metadata.PackageNotFoundError:
@@ -151,5 +149,5 @@ def _required(name: str) -> tuple[str, ...] | None:
 
 
 def normalised(name: str) -> str:
-    """As package indexes compare names."""
+    """The normalised form of a distribution's name."""
     return re.sub(r"[-_.]+", "-", name).lower()

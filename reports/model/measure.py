@@ -1,4 +1,4 @@
-"""A Measurement is one cell's row: outcome, errors, cost and size. Nothing downstream of it knows physics."""
+"""Runs a cell and measures its row: outcome, errors, cost and size."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from reports.model.spending import spending
 
 NAN = float("nan")
 TIMED = ("sweep", "beside", "growth", "large")  # purposes whose rows are charted against their cost
-SAME_INSTANT = 1e-15  # relative: a sum or product of steps rounds a few times
-# CPU seconds after which a cell is not run once more: in the median of 70 cells 1.8 % above the least of ten runs.
+SAME_INSTANT = 1e-15  # relative difference of equal instants, from rounding
+# CPU seconds after which a run is not repeated: the median of 70 cells was then 1.8 % above the minimum of ten runs.
 BUDGET = 0.015
 MOST_RUNS = 5
-LONG_RUN = 0.05  # s: the first of such runs takes 1.01 times as long as the least of three more, and is not repeated
+LONG_RUN = 0.05  # s; a longer run is not repeated, since it takes only 1.01 times the minimum of three repetitions
 TRUTHS = "truths"  # the folder of exact motions beside a store, which may be deleted at any time
-SHORT_MOTION = 5e-3  # s: a motion that takes less is computed again sooner than it is read
-# What reading a damaged file raises; RuntimeError: parts that say that they are encrypted, or packed in another way.
+SHORT_MOTION = 5e-3  # s; computing a shorter motion again is faster than reading it
+# Exceptions of reading a damaged file; RuntimeError is that of a part marked as encrypted.
 DAMAGES = (OSError, ValueError, KeyError, EOFError, RuntimeError, MemoryError, struct.error, zlib.error, BadZipFile)
 PARTS = ("t", "pose", "twist", "reaction")
 
@@ -49,7 +49,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True)
 class Measurement:
-    """One flat row. Errors: m, rad, m/s, rad/s, energy and reaction relative; NaN where unknown. Costs: CPU seconds."""
+    """The row of a cell. Errors have the units of `reports.model.quantities`; NaN if unknown. Costs are CPU seconds."""
 
     key: str
     purpose: str
@@ -67,7 +67,7 @@ class Measurement:
     position_rms: float = NAN
     angle: float = NAN
     angle_rms: float = NAN
-    angle_duration: float = NAN  # beyond the horizon too
+    angle_duration: float = NAN  # the angle error over the whole duration
     velocity: float = NAN
     rate: float = NAN
     gap: float = NAN
@@ -87,13 +87,13 @@ class Measurement:
     own_rows: int = 0
     own_freedoms: int = 0
     cpu: float = NAN  # of stepping per simulated second
-    runs: int = 0  # that `cpu` is the minimum of
+    runs: int = 0  # number of runs, of whose times `cpu` is the minimum
     build: float = NAN
-    limit: float = NAN  # CPU seconds, of a cell that was timed out: with more it might have ended
+    limit: float = NAN  # CPU seconds; of a cell that timed out
 
     @property
     def method(self) -> str:
-        """The engine and its variant, as they are printed."""
+        """The printed name of the engine and its variant."""
         return f"{self.engine} {self.variant}"
 
     @property
@@ -115,7 +115,7 @@ TIMINGS = ("cpu", "runs", "build")
 
 
 def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> Measurement:
-    """The row of a cell that gave no numbers."""
+    """The row of a cell without numbers."""
     return Measurement(
         key=cell.key,
         purpose=cell.purpose,
@@ -133,10 +133,9 @@ def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> 
 
 
 def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
-    """The scene's motion at an engine's instants t (times,) [s], stored in a folder unless it is None or not there.
+    """The scene's motion at an engine's instants t (times,) [s], read from or stored in an existing folder.
 
-    Engines that take other steps meet the same instants but for rounding, and then share one motion. Raises ValueError
-    where the scene refuses.
+    Instants that differ only by rounding share a motion. Raises ValueError if the scene refuses.
     """
     usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
     shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
@@ -147,7 +146,7 @@ def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
 
 @lru_cache(maxsize=128)
 def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
-    """A file is named by all that its motion depends on, and so is never stale."""
+    """The cached motion. The name of its file is a digest of everything it depends on, so that it is never stale."""
     if folder is None or not folder.is_dir():
         return freeze(scene.motion(np.frombuffer(instants)))
     file = folder / f"{digest(name.encode() + instants, LONG)}.npz"
@@ -160,7 +159,7 @@ def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Tr
 
 
 def _store_motion(motion: Trajectory, file: Path) -> None:
-    """Write it whole or not at all; without it only time is lost."""
+    """Write the complete file or none; errors are ignored, since the motion can be computed again."""
     half = file.with_name(f"{file.stem}.{os.getpid()}.half")
     with suppress(OSError):
         try:
@@ -177,9 +176,9 @@ def _own_freedoms(scene: Scene) -> int:
 
 
 def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Measurement:
-    """Build, run, compare and time one cell, in this process. `truths`: the folder of exact motions, if there is one.
+    """Build, run, compare and time one cell in this process. `truths`: the folder of exact motions.
 
-    Refusals and warnings of the engine become outcomes; other exceptions pass (the pool records them).
+    Refusals and warnings of the engine become outcomes; other exceptions are raised, and the pool records them.
     """
     row = blank(cell)
     with np.errstate(all="ignore"):
@@ -214,7 +213,7 @@ def process_seconds(function: Callable[[], Result]) -> tuple[float, Result]:
 
 
 def repeated_stepping(cell: Cell, mechanism: Mechanism, first: float, build: float) -> tuple[float, int, float]:
-    """(least stepping time [s], runs it is the least of, least building time [s]) of a cell already run once."""
+    """(minimum stepping time [s], number of runs, minimum building time [s]) of a cell that was run once."""
     if not first < LONG_RUN:
         return first, 1, build
     times: list[float] = []
@@ -227,7 +226,7 @@ def repeated_stepping(cell: Cell, mechanism: Mechanism, first: float, build: flo
 
 
 def sizes(mechanism: Mechanism, size: Any, freedoms: int) -> dict[str, int]:
-    """The engine's model beside the mechanism's own size."""
+    """The sizes of the engine's model and of the mechanism."""
     return {
         **asdict(size),
         "own_bodies": len(mechanism.bodies),
@@ -240,7 +239,7 @@ def sizes(mechanism: Mechanism, size: Any, freedoms: int) -> dict[str, int]:
 def compare(
     cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measurement, truths: Path | None = None
 ) -> Measurement:
-    """Fill a row with errors and its outcome."""
+    """Fill in the errors and the outcome of a row."""
     trajectory, note = stopped_where_it_ends(cell.scene, trajectory)
     count = usable_samples(trajectory)
     finite = first_samples(trajectory, count)
@@ -248,16 +247,16 @@ def compare(
     note = "; ".join(filter(None, dict.fromkeys([note, *trajectory.warnings])))
     try:
         errors |= constraint_errors(mechanism, finite) if count else {}
-    except ValueError as reason:  # it went where the joint itself is not defined: beyond a corner, say
+    except ValueError as reason:  # the joint is not defined at a pose of the run, for example beyond a corner
         sentence = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
         return replace(row, outcome=Outcome.REFUSED, sentence=sentence)
     try:
         truth = exact_motion(cell, finite.t, truths)
         errors |= motion_errors(cell.scene, mechanism, truth, finite)
         errors["flips"] = branch_flips(cell.scene, truth, finite)
-    except NoMotion as reason:  # no motion of these numbers is known, so that nothing can be held against an engine
+    except NoMotion as reason:  # the exact motion is unknown, so that no error can be computed
         return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
-    except ValueError as reason:  # the textbook refuses: there is no such motion, whatever the engine makes of it
+    except ValueError as reason:  # the exact motion does not exist; the row keeps the engine's outcome
         note = "; ".join(filter(None, (f"the reference refuses: {reason}", note)))
     if trajectory.estimate is not None and not np.isnan(trajectory.estimate[..., 2]).all():
         errors["estimate"] = float(np.nanmax(np.abs(trajectory.estimate[..., 2])))
@@ -268,7 +267,7 @@ def compare(
 
 
 def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Trajectory, str]:
-    """The samples that may be compared with the scene's ideal motion, and a sentence if there were others."""
+    """The samples that can be compared with the ideal motion, and a sentence if others were removed."""
     limit = scene.comparable_until
     count = int(np.sum(trajectory.t <= limit * (1 + 1e-12)))
     if count == len(trajectory.t):
@@ -284,5 +283,5 @@ def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Traject
 
 
 def first_samples(trajectory: Trajectory, count: int) -> Trajectory:
-    """The motion at so many samples from the start."""
+    """The motion at the first `count` samples."""
     return replace(trajectory, **{part: getattr(trajectory, part)[:count] for part in PARTS})

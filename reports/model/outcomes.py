@@ -1,7 +1,7 @@
-"""The outcomes of a cell: the closed list, their meanings, and the functions that decide them.
+"""The possible outcomes of a cell, and the functions that decide which of them applies.
 
-`of_motion` decides of a cell that gave a motion; `refusal`, `failure`, `out_of_time` and `second_crash` of others.
-`converged` and `plateau` need a sweep (`reports.model.convergence`).
+`of_motion` applies to a cell with a motion, `refusal`, `failure`, `out_of_time` and `second_crash` to other cells.
+`converged` and `plateau` follow from a sweep (`reports.model.convergence`).
 """
 
 from __future__ import annotations
@@ -19,27 +19,21 @@ if TYPE_CHECKING:
     from reference.trajectory import Trajectory
     from reports.model.measure import Measurement
 
-TORN = 0.05  # of the mechanism's length: far above any softness, far below a link
-BLOWN = 1e3  # of the mechanism's length
-SATURATED = 0.5  # rad: the angle error's growth is no longer proportional to what causes it
+TORN = 0.05  # largest gap in lengths of the mechanism; much larger than the effect of softness, and shorter than a link
+BLOWN = 1e3  # gap in lengths of the mechanism above which a run has diverged
+SATURATED = 0.5  # rad; a larger angle error is no longer proportional to its cause
 
 
 class Outcome(StrEnum):
-    """One cell ends in exactly one of these; `converged` and `plateau` are given by a sweep to a cell that finished.
+    """The outcome of a cell."""
 
-    This table is the only one: a page prints `meaning` (a clause), a map draws `letter` on the theme's `colour` with
-    `hatch`, and `grade` says how grave an outcome is: 0 the errors can be compared, 1 the method itself declares that
-    it has no result, 2 the motion is wrong, 3 there is no motion at all.
-    """
-
-    meaning: str
-    letter: str
-    grade: int
-    colour: str
-    hatch: str
+    meaning: str  # a clause for pages
+    letter: str  # in a map
+    grade: int  # 0: the errors are comparable; 1: the method declares no result; 2: a wrong motion; 3: no motion
+    colour: str  # in a map: a field of `reports.plots.theme.Theme`
+    hatch: str  # in a map
 
     def __new__(cls, word: str, letter: str, grade: int, colour: str, hatch: str, meaning: str) -> Self:
-        """`colour`: a field of `reports.plots.theme.Theme`."""
         outcome = str.__new__(cls, word)
         outcome._value_ = word
         outcome.letter, outcome.grade, outcome.colour = letter, grade, colour
@@ -84,7 +78,7 @@ class Outcome(StrEnum):
         *("failed", "F", 3, "worse", ""),
         "an unexpected exception, or an answer that is no motion at the instants asked for",
     )
-    # Never stored, since it says nothing about the engine.
+    # Never stored, since it does not depend on the engine.
     LOST = (
         *("lost", "x", 3, "worse", ""),
         "its process was killed from outside, twice, or a module could not be imported there",
@@ -92,25 +86,25 @@ class Outcome(StrEnum):
 
     @property
     def comparable(self) -> bool:
-        """Whether the errors of such a cell say how exact the method is (else they only say that it failed)."""
+        """Whether the errors of such a cell measure the accuracy of the method."""
         return self.grade == 0
 
     @property
     def wrong(self) -> bool:
-        """Whether the cell gave another motion than the scene's."""
+        """Whether the motion of the cell is wrong."""
         return self.grade == 2
 
 
 @dataclass(frozen=True)
 class Loss:
-    """Why a cell has no result; a supervised process gives it instead of one."""
+    """The outcome of a cell without a result."""
 
     outcome: Outcome
     sentence: str
 
 
-# Sent by another process: a user's, a batch system's at its limits, the kernel's if memory is short (SIGKILL). All
-# other signals that end a process come from its own code. Windows has few of these names.
+# Signals that a user, a batch system at its limits, or the kernel (if memory is short) sends to a process. Other
+# signals that end a process come from its own code. Windows defines only few of these names.
 FROM_OUTSIDE = {
     getattr(signal, name)
     for name in ("SIGKILL", "SIGTERM", "SIGHUP", "SIGINT", "SIGQUIT", "SIGXCPU", "SIGXFSZ")
@@ -119,14 +113,14 @@ FROM_OUTSIDE = {
 
 
 def from_outside(code: int | None) -> bool:
-    """Whether a process with this exit code was ended by another process; also if the code is unknown (None)."""
+    """Whether another process ended the process with this exit code; true for an unknown exit code (None)."""
     return code is None or -code in FROM_OUTSIDE
 
 
 def describe_exit(code: int | None) -> str:
-    """The words for a process that ended with this exit code; negative codes are signals."""
+    """A clause about a process with this exit code; negative codes are signals."""
     if code is None:
-        return "the process ended, nobody knows how"
+        return "the process ended with an unknown exit status"
     if code < 0:
         try:
             name = signal.Signals(-code).name
@@ -140,12 +134,12 @@ def describe_exit(code: int | None) -> str:
 
 
 def refusal(reason: Exception) -> Loss:
-    """The loss of a cell that an engine or the reference refused by ValueError or `engines.Unsupported`."""
+    """The loss of a cell that an engine or the reference refused with ValueError or `engines.Unsupported`."""
     return Loss(Outcome.REFUSED if isinstance(reason, ValueError) else Outcome.UNSUPPORTED, str(reason))
 
 
 def failure(error: BaseException) -> Loss:
-    """The loss of a cell that raised another exception; a failed import says nothing about the engine."""
+    """The loss of a cell that raised another exception; after a failed import the cell is lost."""
     return Loss(Outcome.LOST if isinstance(error, ImportError) else Outcome.FAILED, describe(error))
 
 
@@ -157,14 +151,14 @@ def out_of_time(limit: float, wall: float | None = None) -> Loss:
 
 
 def second_crash(code: int | None, words: str, earlier: str) -> Loss:
-    """The loss of a cell whose process ended twice; code, words: of the second time, earlier: words of the first."""
+    """The loss of a cell whose process ended twice; `code` and `words` are those of the second end."""
     if from_outside(code):
         return Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {earlier}")
     return Loss(Outcome.ABORTED, words)
 
 
 def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, count: int) -> tuple[Outcome, str]:
-    """(one cell's outcome, the gravest first; the number that decided it): `count` samples of its motion are finite."""
+    """(the gravest outcome that applies, a sentence with the number that decided it); `count`: finite samples."""
     length = mechanism.length_scale
     if trajectory.reset_at is not None:
         return Outcome.RESET, f"started anew by itself at {trajectory.reset_at:.4g} s"
@@ -173,7 +167,7 @@ def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, co
     if row.gap > BLOWN * length:
         return Outcome.DIVERGED, f"a joint opened by {row.gap:.2g} m"
     if row.gap > TORN * length:
-        # Findings of our adapters do not count: the engine itself has to report it.
+        # Only warnings of the engine itself count, not those of our adapters.
         quiet = "" if trajectory.has_engine_warning else ", without a warning"
         return Outcome.TORN, f"a joint opened by {row.gap:.2g} m in a mechanism of {length:.2g} m{quiet}"
     if row.drive_gap > SATURATED:

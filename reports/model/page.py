@@ -22,7 +22,7 @@ def no_context(material: Material) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Observation:
-    """The outcome of something that is no cell: a stored motion, or a method of the reference."""
+    """The outcome of a stored motion or of a method of the reference, which are no cells."""
 
     method: str
     setting: str
@@ -33,20 +33,17 @@ class Observation:
 class Failure:
     """An experiment in which methods are expected to fail.
 
-    expected: what should happen according to the reference, a template with the variables of `context`. cells: of the
-    purpose "failure". tasks: run with them. observations: reads their answers; it steps and integrates nothing.
-    columns: the quantities whose largest errors are printed for every cell; without any, a grid of methods and steps
-    has the angle's. remark: a template with `at(method, step)`, the row at about a step [s], `count(outcome)`, how many
-    rows ended so (all of them without an outcome), and the variables of `context`; a clause within `if_measured` is
-    left out where one of its numbers is missing.
+    `expected` and `remark` are templates with the variables of `context`. In a remark, `at(method, step)` is the row at
+    about this step [s], and `count(outcome)` the number of rows with an outcome, or of all rows. A clause within
+    `if_measured` is left out if one of its numbers is missing.
     """
 
     title: str
-    expected: str = ""
-    cells: tuple[Cell, ...] = ()
-    observations: Callable[[Material], Sequence[Observation]] | None = None
-    remark: str = ""  # the remark on the outcomes
-    columns: tuple[str, ...] = ()
+    expected: str = ""  # the behaviour according to the reference
+    cells: tuple[Cell, ...] = ()  # with the purpose "failure"
+    observations: Callable[[Material], Sequence[Observation]] | None = None  # reads the answers to `tasks`
+    remark: str = ""  # about the outcomes
+    columns: tuple[str, ...] = ()  # quantities whose largest errors are printed; if empty, a grid of angle errors
     tasks: tuple[Task, ...] = ()
     context: Callable[[Material], Mapping[str, Any]] = no_context
     claims: tuple[str, ...] = ()  # expressions that hold where the remark is true (`reports.pages.claims`)
@@ -78,11 +75,11 @@ class Material:
         return {cell: trajectory_of(answer) for cell, answer in answers if answer is not None}
 
     def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
-        """The sweep rows of some scenes, in the order of the grid."""
+        """The rows of the sweeps of these scenes."""
         return self._of(scenes, "sweep")
 
     def usual(self, scenes: Iterable[Scene]) -> list[Measurement]:
-        """The rows of some scenes at steps between those of the sweep that people use."""
+        """The rows of these scenes at USUAL_STEPS."""
         return self._of(scenes, "usual")
 
     def _of(self, scenes: Iterable[Scene], purpose: Purpose) -> list[Measurement]:
@@ -90,7 +87,7 @@ class Material:
         return [row for cell, row in self.rows.items() if cell.purpose == purpose and cell.scene.name in names]
 
     def of(self, cells: Iterable[Cell]) -> list[Measurement]:
-        """The rows of these cells, those that were run."""
+        """The stored rows of these cells."""
         return [self.rows[cell] for cell in cells if cell in self.rows]
 
 
@@ -103,27 +100,27 @@ def usual_series(row: Measurement) -> bool:
 
 @dataclass(frozen=True)
 class Page:
-    """One mechanism's page: `name`.md in the results, from its template."""
+    """A page of the results about one mechanism."""
 
     name: str
     title: str
     lesson: str  # one sentence for the index
-    scenes: tuple[Scene, ...] = ()  # which the page teaches, each on one page only
+    scenes: tuple[Scene, ...] = ()  # the scenes that the page teaches, each on only one page
     engines: tuple[Engine, ...] = ()
-    companions: tuple[Scene, ...] = ()  # scenes of other pages with which the page's own cells are run too
-    borrowed: tuple[Cell, ...] = ()  # cells of other pages whose rows the words use; this page never has them run
-    # May extend "base.md"; without one, page.md in the folder of the page's name, else the generic "base.md" itself.
+    companions: tuple[Scene, ...] = ()  # scenes of other pages; a run of one includes the cells of this page's failures
+    borrowed: tuple[Cell, ...] = ()  # cells of other pages whose rows this page uses; it does not run them
+    # A template, which may extend "base.md". If None: page.md in the folder with the page's name, else "base.md".
     template: Path | None = None
     failures: tuple[Failure, ...] = ()
-    # Whether a scene is run in an engine: a construction of a joint has no place where there is no such joint.
+    # Whether an engine runs a scene; an engine for a special joint is only run in scenes with this joint.
     compared: Callable[[Scene, Engine], bool] = lambda scene, engine: True
-    quantity: str = "angle"  # by whose error methods are compared and charted
-    advised: str = ""  # the scene for which the page says which setting gives which accuracy; the first if empty
+    quantity: str = "angle"  # whose error is compared and charted
+    advised: str = ""  # the scene for which the page recommends settings; the first if empty
     featured: Callable[[Measurement], bool] = usual_series
     figures: Callable[[Material], Mapping[str, str]] = no_context  # SVG texts by file name without ending
     context: Callable[[Material], Mapping[str, Any]] = no_context  # the template's own variables
     further: Callable[[Material], Mapping[str, str]] = no_context  # Markdown files beside the page, by name
-    # (scene, method) -> the promise where the motion, not the mechanism alone, makes it another than the engine's.
+    # (scene, method) -> the order, if it differs from the engine's declared one because of the motion.
     orders: Mapping[tuple[str, str], ConvergenceOrder] = field(default_factory=dict, compare=False)
     # (scene, method, check) -> the known deviation of this check (`reports.model.checks`).
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
@@ -131,27 +128,27 @@ class Page:
     cells: tuple[Cell, ...] = ()  # besides the grid and the experiments
 
     def teaches(self, scene: Scene) -> bool:
-        """Whether the scene has its place here: by its name, so that it may have other numbers."""
-        return scene.name in {each.name for each in self.scenes}
+        """Whether a scene with this name is on the page; its numbers may differ."""
+        return scene.name in {own.name for own in self.scenes}
 
     def is_run_with(self, scene: Scene) -> bool:
         """Whether the cells of failures are run with the scene."""
-        return scene.name in {each.name for each in (*self.scenes, *self.companions)}
+        return scene.name in {other.name for other in (*self.scenes, *self.companions)}
 
     @property
     def advised_scene(self) -> Scene | None:
-        """The scene for which the page says which setting gives which accuracy; None on a page without scenes."""
+        """The scene for which the page recommends settings; None on a page without scenes."""
         return next((scene for scene in self.scenes if self.advised in ("", scene.name)), None)
 
     @property
     def document(self) -> str:
-        """The Markdown file that is written of it."""
+        """The name of the page's Markdown file."""
         return f"{self.name}.md"
 
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
-        """The engines in which a scene of the page is run."""
+        """The engines that run a scene of the page."""
         return tuple(engine for engine in self.engines if self.compared(scene, engine))
 
     def extra_cells(self) -> tuple[Cell, ...]:
-        """The cells of failures and the page's own, beyond the sweep."""
+        """The cells of the failures and of `cells`, which are not part of the grid."""
         return (*(cell for failure in self.failures for cell in failure.cells), *self.cells)

@@ -1,4 +1,4 @@
-"""The quantities that are compared with the true motion: unit, rounding, and the facts that the gate needs."""
+"""The quantities whose errors are measured, with their units, their rounding, and the facts that the gate needs."""
 
 from __future__ import annotations
 
@@ -8,31 +8,31 @@ from dataclasses import dataclass
 
 from reports.model.outcomes import SATURATED, TORN
 
-DIGITS = 4  # of the numbers in a report's CSV files
+DIGITS = 4  # significant digits of the numbers in a report's CSV files
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of error, with all its facts for checks and tables.
+    """A kind of error.
 
-    rounding: smaller errors carry no information on a model. Positions and angles lose about 1e-16 a step over 1e5
-    steps, so 1e-11 allows some ill-conditioning; velocities are differences of positions over a step, and reactions are
-    differences of velocities.
+    The rounding of positions and angles is 1e-11, since they lose about 1e-16 per step over 1e5 steps, and the problem
+    may be ill-conditioned. Velocities are differences of positions over a step, and reactions of velocities, so their
+    rounding is larger.
     """
 
     name: str  # the field of a Measurement
     unit: str
-    rounding: float
+    rounding: float  # errors below this value have no information about a model
     check: str  # the name of its check in the gate of theory
-    needs_truth: bool = True  # False for constraint violations, which follow from the joints and the run alone
-    is_of_joints: bool = False  # tables of scenes have it beside the quantity of the page
-    follows: str = ""  # the quantity whose error causes one of this
-    lag: float = 0.0  # steps by which a first-order value is late in a prescribed motion; 0 for poses, which are not
-    # The largest comparable error: in multiples of the mechanism's length, of the largest speed or rate of the motion,
-    # or, for relative quantities and angles [rad], itself.
+    needs_truth: bool = True  # False for constraint violations, which follow from the run alone
+    is_of_joints: bool = False  # whether tables of scenes show it beside the quantity of the page
+    follows: str = ""  # the quantity whose error causes an error of this one
+    lag: float = 0.0  # delay of a first-order value in a prescribed motion, in steps
+    # The largest comparable error, relative to the length of the mechanism or to the largest speed or rate of the
+    # motion; for relative quantities and angles [rad] the error itself.
     largest: float = 1.0
-    # Whether the time scale of an order below 2 is the angle's if that is shorter: the fourth-order run of the judge
-    # does not show it, as its positions hold the drift of the constraints, and its energy is an order better.
+    # Whether the time scale for an order below 2 is that of the angle if that is shorter. The judge's fourth-order run
+    # does not show this time scale, since constraint drift dominates its positions and its energy is more accurate.
     scales_with_angle: bool = False
 
     @property
@@ -41,7 +41,7 @@ class Quantity:
 
     @property
     def heading(self) -> str:
-        """The header of a column with its errors, and the label of an axis."""
+        """The label of a column or an axis with its errors."""
         return f"{self.label} error [{self.unit}]" if self.needs_truth else f"{self.label} [{self.unit}]"
 
 
@@ -56,7 +56,7 @@ QUANTITIES = (
     Quantity("energy", "relative", 1e-11, "energy", lag=0.5, scales_with_angle=True),
     Quantity("reaction", "relative", 1e-9, "reaction", is_of_joints=True, lag=1.0),
 )
-QUANTITY: Mapping[str, Quantity] = {each.name: each for each in QUANTITIES}
+QUANTITY: Mapping[str, Quantity] = {entry.name: entry for entry in QUANTITIES}
 
 
 # Field of a Measurement -> the quantity that it measures in another way.
@@ -67,7 +67,7 @@ OF: Mapping[str, str] = {
 
 
 def quantity(name: str) -> Quantity:
-    """Raises KeyError for a name that is not in QUANTITIES."""
+    """The quantity with this name. Raises KeyError for an unknown name."""
     return QUANTITY[name]
 
 
@@ -79,12 +79,11 @@ def printed(value: float) -> float:
 
 
 def rounding_tolerance(name: str, before: float, amplified: float = 1.0) -> tuple[float, float]:
-    """How much a value may differ between processors: (one unit of its last printed digit, rounding).
+    """The allowed difference of a value between processors: (one unit of its last printed digit, rounding).
 
-    name: a field of a Measurement that is an error, its root mean square or its estimate; KeyError for another. Other
-    rounding moves the motion by at most `Quantity.rounding`, and so changes its error by no more. amplified: the factor
-    by which the method amplifies rounding (`engines.ConvergenceOrder`). The amplification by the motion is measured in
-    `reports.gate.change`.
+    name: a field of a Measurement that is an error, its root mean square or its estimate. amplified: the factor by
+    which the method amplifies rounding (`engines.ConvergenceOrder`). The amplification by the motion is measured in
+    `reports.gate.change`. Raises KeyError for another field.
     """
     return printed(before), quantity(OF.get(name, name)).rounding * amplified
 
@@ -92,8 +91,8 @@ def rounding_tolerance(name: str, before: float, amplified: float = 1.0) -> tupl
 def agrees(name: str, now: float, before: float, amplified: float = 1.0) -> bool:
     """Whether two values of one quantity differ by no more than its `rounding_tolerance`; NaN agrees with NaN.
 
-    `before` may be rounded to DIGITS. In 4,280 rows of two processors eight numbers differ by more: those of pivots at
-    the contact of two curves, where rounding feeds back. All others differ by less than two thirds of the tolerance.
+    `before` may be rounded to DIGITS. In 4,280 rows of two processors eight numbers differ by more, all for pivots at
+    the contact of two curves, which amplify rounding. All others differ by less than two thirds of the tolerance.
     """
     allowed = sum(rounding_tolerance(name, before, amplified))
     if not (math.isfinite(now) and math.isfinite(before)):

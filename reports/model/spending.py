@@ -29,7 +29,7 @@ def spending(part: str) -> Iterator[None]:
 
 
 def taken() -> Mapping[str, float]:
-    """CPU seconds by part since the last call."""
+    """Part -> CPU seconds since the last call."""
     out = dict(_spent)
     _spent.clear()
     return out

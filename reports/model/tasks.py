@@ -1,6 +1,6 @@
-"""A task computes data of a page besides its rows: a motion, or a number by integration. Its answer is stored.
+"""A task computes further data of a page, such as a motion. Its answer is stored, as rows are.
 
-Nothing is stepped or integrated while a page is written: it reads the answers to its tasks, as it reads rows.
+So writing a page reads only stored data, and does not step or integrate.
 """
 
 from __future__ import annotations
@@ -33,23 +33,23 @@ class Answer:
     outcome: Outcome
     sentence: str = ""
     values: Values = field(default_factory=dict)
-    limit: float = float("nan")  # CPU seconds, of a task that was timed out: with more it might have ended
+    limit: float = float("nan")  # CPU seconds; of a task that timed out
 
     @property
     def finished(self) -> bool:
         return self.outcome == Outcome.FINISHED
 
     def array(self, name: str) -> Array:
-        """A value that is an array. Raises KeyError for one that is not there."""
+        """The array with this name. Raises KeyError if it is missing."""
         return np.asarray(self.values[name], dtype=float)
 
     def number(self, name: str) -> float:
-        """A value that is one number. Raises KeyError for one that is not there."""
+        """The number with this name. Raises KeyError if it is missing."""
         return float(self.array(name))
 
     @property
     def told(self) -> str:
-        """'**aborted**: why', for a table."""
+        """The outcome and the reason in Markdown, for a table."""
         return f"**{self.outcome}**{': ' + self.sentence if self.sentence else ''}"
 
 
@@ -59,38 +59,37 @@ class Task(ABC):
     An answer is stale when a source file of this suite changes.
     """
 
-    seconds: ClassVar[float] = 1.0  # about how long it takes, where that does not depend on the fields
-    words: ClassVar[str] = "{0!r}"  # the label, a format of the task
+    seconds: ClassVar[float] = 1.0  # estimated CPU time, if it does not depend on the fields
+    words: ClassVar[str] = "{0!r}"  # format string of the label; {0} is the task
 
     @property
     def cost(self) -> float:
-        """About how long it takes [s]; an estimate, the same on every machine."""
+        """Estimated CPU time [s], which does not depend on the machine."""
         return self.seconds
 
     @property
     def label(self) -> str:
-        """A few words for the line of progress."""
         return self.words.format(self)
 
     @property
     def engine(self) -> Engine | None:
-        """The engine that is run; None for a method that is no engine."""
+        """The engine that the task runs; None without an engine."""
         return None
 
     @abstractmethod
     def run(self) -> Values:
-        """Numbers (float64 arrays) and words by name. Raises Unsupported, or ValueError for input that can't be."""
+        """Name -> float64 array or text. Raises Unsupported, or ValueError for invalid input."""
 
     @cached_property
     def key(self) -> str:
-        """A digest of all that the answer depends on; equal keys mean that a stored answer still holds."""
+        """A digest of everything on which the answer depends: a stored answer with the same key is valid."""
         parts = ("task", type(self).__qualname__, repr(self), fingerprint(self, folders=OURS))
         return digest("\0".join(parts), LONG)
 
 
 @dataclass(frozen=True)
 class Motion(Task):
-    """The whole trajectory of a cell, for a picture or an experiment."""
+    """The trajectory of a cell, for a picture or an experiment."""
 
     cell: Cell
 
@@ -120,7 +119,7 @@ def trajectory_of(answer: Answer) -> Trajectory:
 
 
 def answered(task: Task) -> Answer:
-    """Run a task in this process. Refusals become outcomes; other exceptions pass (the pool records them)."""
+    """Run a task in this process. Refusals become outcomes; other exceptions are raised, and the pool records them."""
     with np.errstate(all="ignore"):
         try:
             with spending("tasks"):

@@ -129,7 +129,7 @@ def test_exit_codes_are_distinguished():
         (-signal.SIGFPE, False, "aborted with signal 8 (SIGFPE)"),
         (-200, False, "aborted with signal 200 (unknown)"),
         (0xC0000005, False, "aborted with status 0xC0000005"),
-        (None, True, "the process ended, nobody knows how"),
+        (None, True, "the process ended with an unknown exit status"),
     ):
         assert (from_outside(code), describe_exit(code)) == (outside, text)
 
