@@ -168,7 +168,7 @@ def _answers(
 
 
 def _failed(case: ConformanceCase, words: str) -> tuple[ConformanceCase, ConformanceResult]:
-    return case, ConformanceResult("fails", f"{case.check.name}: {case.check.asks} {words}")
+    return case, ConformanceResult("fails", f"{case.check.name}: {case.check.requirement} {words}")
 
 
 def _of_check(every: Sequence[ConformanceCase], name: str) -> list[ConformanceCase]:
