@@ -41,7 +41,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engines.capability import Capability
+from engines.capability import Capability, Lack
 from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.motions import over_three
 from engines.sampling import sampled_with_differences, unwrapped
@@ -213,6 +213,7 @@ BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
     Slot: Box2DWorld.add_slot,
     Rod: Box2DWorld.add_rod,
     Weld: Box2DWorld.add_weld,
+    Drive: lambda world, drive: None,  # it is the motor of a pin or slot
 }
 
 
@@ -228,17 +229,18 @@ class Box2D(ExtraEngine):
     packages = ("pyb2d3",)
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Enforcement] = "ours"
-    absent_elements: ClassVar[frozenset[type]] = frozenset({Gear, Skate})
     precision: ClassVar[float] = 2.0**-23
     angle_error: ClassVar[float] = 2.8e-5  # of the polynomial b2Atan2 (math_functions.h), for the angle of a weld
     capability: ClassVar[Capability] = Capability(
         "box2d",
-        (*BOX2D_JOINTS, Drive),  # a drive is the motor of a pin or slot
+        BOX2D_JOINTS,
         lacks={
-            Gear: f"box2d has no gears since version 3 ({JOINT_LIST})",
-            Skate: "box2d has no joint for a velocity across a blade alone: those for lines hold a place on them "
-            f"({JOINT_LIST})",
-            Roll: "in box2d a disc rolls by contact and friction, and our adapter builds no contact",
+            Gear: Lack("box2d has no gears since version 3", JOINT_LIST),
+            Skate: Lack(
+                "box2d has no joint for a velocity across a blade alone: those for lines hold a place on them",
+                JOINT_LIST,
+            ),
+            Roll: Lack("in box2d a disc rolls by contact and friction, and our adapter builds no contact"),
         },
     )
 

@@ -30,13 +30,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engines.capability import Capability
+from engines.capability import Capability, Lack
 from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported, unresolved
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled_with_differences
 from engines.single_run import ExtraEngine, Recorded, quiet
-from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_offset
 from reference.checks import Count, Fraction, Name, validated
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -57,8 +57,8 @@ SMALLEST_INERTIA = float(np.finfo(float).eps)
 UNMOVED = unresolved(0.0, "bullet takes an inertia below 2.2e-16 for none and moves it by no force")
 UNTURNED = unresolved(0.0, "a motor of bullet does nothing to an inertia above 4.5e15")
 ORIGIN = [0.0, 0.0, 0.0]
-# The engine's constraint for each kind of joint that closes a loop.
-BULLET_LOOPS = {Pin: "JOINT_POINT2POINT", Weld: "JOINT_FIXED"}
+# The engine's constraint for a joint that closes a loop; "" for joints that are never such a constraint.
+BULLET_JOINTS = {Pin: "JOINT_POINT2POINT", Weld: "JOINT_FIXED", Slot: "", Drive: "", Gear: ""}
 
 
 @dataclass(frozen=True)
@@ -76,12 +76,13 @@ class Bullet(ExtraEngine):
     forces_by: ClassVar[Enforcement] = "ours"
     capability: ClassVar[Capability] = Capability(
         "bullet",
-        (*BULLET_LOOPS, Slot, Drive, Gear),
+        BULLET_JOINTS,
         lacks={
-            Rod: "our adapter of bullet builds no distance between points",
-            Skate: "bullet stops slip by friction at a contact, and our adapter builds no contact",
-            Roll: "in bullet a disc rolls by contact and friction, and our adapter builds no contact",
+            Rod: Lack("our adapter of bullet builds no distance between points"),
+            Skate: Lack("bullet stops slip by friction at a contact, and our adapter builds no contact"),
+            Roll: Lack("in bullet a disc rolls by contact and friction, and our adapter builds no contact"),
         },
+        lacks_in_loops={Slot: Lack("our adapter of bullet builds no slot that closes a loop")},
     )
 
     variant: Name
@@ -154,7 +155,6 @@ def inertia_warnings(tree: Tree, motors: Iterable[int]) -> tuple[RunWarning, ...
 
 def motor_rates(tree: Tree) -> dict[int, float]:
     """The rates [rad/s] of motors by tree coordinate; raises Unsupported for what bullet cannot represent."""
-    refuse_slots_in_loops(tree, "bullet")
     bodies, rates = tree.mechanism.bodies, dict[int, float]()
     for link in tree.links:
         if len(link.columns) > 1:
@@ -278,7 +278,7 @@ class BulletWorld:
         ]
         ends.sort(key=lambda end: end[0] < 0)  # the ground can only be the second
         (first, first_point), (second, second_point) = ends
-        kind = getattr(self.bullet, BULLET_LOOPS[type(loop)])
+        kind = getattr(self.bullet, BULLET_JOINTS[type(loop)])
         self._constrain(first, second, kind, first_point, second_point)
 
     def _constrain(

@@ -8,8 +8,8 @@
 3. Set `packages` to the installed packages, of Python or npm, whose versions the numbers depend on. The report prints
    these versions.
 4. `build(mechanism, dt)` returns a `Run`: the model at t = 0 for steps of dt [s]. It raises `Unsupported`, with one
-   sentence, for a mechanism that the engine cannot represent. No joint or force element may be left out; see
-   `engines.capability.Capability`, and `refuse_forces` for an engine that has only gravity.
+   sentence, for a mechanism that the engine cannot represent. No joint or force element may be left out: `capability`
+   is the table of the elements that the engine builds, and `refuse_forces` is for an engine that has only gravity.
 5. `run(samples, every)` takes `samples * every` steps and returns a `Trajectory` of samples + 1 states; state 0 is the
    start, and state k is that after `k * every` steps. Pose, twist and reaction of a state belong to the same instant.
    Reactions that the engine does not provide are NaN, at all samples of a row or only at the first. A run is called
@@ -46,6 +46,7 @@ from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 
+from engines.capability import Capability, Unsupported
 from reference.checks import Count
 from reference.joints import Joint
 from reference.mechanism import Mechanism
@@ -59,16 +60,12 @@ CLAIM = 1e-7
 Enforcement = Literal["engine", "engine, our rows", "ours"]
 
 
-class Unsupported(Exception):
-    """An engine cannot represent this mechanism; the message is one sentence that says why."""
-
-
 def refuse_forces(mechanism: Mechanism, engine: str) -> None:
     """Raise Unsupported for a mechanism with force elements: for an engine that has no force but gravity."""
     if mechanism.forces:
         force = mechanism.forces[0]
-        kind = type(force).__name__
-        raise Unsupported(f"force {force.name!r} is a {kind}; the adapter of {engine} knows no force but gravity")
+        kind, lacking = type(force).__name__, f"the adapter of {engine} knows no force but gravity"
+        raise Unsupported(f"force {force.name!r} is a {kind}; {lacking}", engine=engine, kind=kind, lacking=lacking)
 
 
 def unresolved(time: float, reason: str) -> RunWarning:
@@ -195,7 +192,7 @@ class Engine(ABC):
     precision: relative rounding of the engine's numbers; 0 for double precision
     angle_error: error of angles that the engine measures between bodies, besides rounding [rad]
     forces_by: who evaluates the force elements
-    absent_elements: classes of joints and force elements that the engine, by its documentation, does not have
+    capability: the table of the joints and force elements that it builds; None for an engine without a table
     """
 
     name: str
@@ -207,11 +204,16 @@ class Engine(ABC):
     angle_error: ClassVar[float] = 0.0
     forces_by: ClassVar[Enforcement] = "engine"
     steps_in_child: ClassVar[bool] = False
-    absent_elements: ClassVar[frozenset[type]] = frozenset()
+    capability: ClassVar[Capability | None] = None
 
     @property
     def family(self) -> str:
         return self.name
+
+    @property
+    def absent_elements(self) -> frozenset[type]:
+        """The classes of joints and force elements that the engine, by its documentation, does not have."""
+        return self.capability.absent if self.capability else frozenset()
 
     @property
     def missing(self) -> str:

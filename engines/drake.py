@@ -39,13 +39,13 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.capability import Capability
+from engines.capability import Capability, Lack
 from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled, sampled_with_differences
 from engines.single_run import ExtraEngine, Recorded
-from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_offset
 from reference.checks import Name, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -79,9 +79,10 @@ class Drake(ExtraEngine):
         "drake",
         (Pin, Slot, Drive, Rod, Gear, Weld),
         lacks={
-            Skate: "drake stops slip by friction at a contact, and our adapter builds no contact",
-            Roll: "in drake a body rolls by contact and friction, and our adapter builds no contact",
+            Skate: Lack("drake stops slip by friction at a contact, and our adapter builds no contact"),
+            Roll: Lack("in drake a body rolls by contact and friction, and our adapter builds no contact"),
         },
+        lacks_in_loops={Slot: Lack("our adapter of drake builds no slot that closes a loop")},
     )
 
     variant: Name
@@ -108,7 +109,6 @@ class Drake(ExtraEngine):
 
     def model(self, mechanism: Mechanism, dt: Positive) -> DrakePlant:
         tree = spanning_tree(mechanism)
-        refuse_slots_in_loops(tree, "drake")
         if self.scheme != "discrete":
             refuse_in_continuous_time(tree, self.scheme)
         return DrakePlant(tree, dt, self.scheme)

@@ -32,7 +32,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
-from engines.capability import Capability
+from engines.capability import Capability, Lack
 from engines.contract import EXACT, ConvergenceOrder, NotDeclared
 from engines.extrapolated import Extrapolated
 from engines.exudyn_model import EXUDYN_FORCES, EXUDYN_JOINTS, ExudynSystem, holds_velocities
@@ -68,7 +68,7 @@ class Exudyn(ExtraEngine):
         "exudyn",
         EXUDYN_JOINTS,
         EXUDYN_FORCES,
-        {Coupling: "our adapter of exudyn builds no coupling"},
+        {Coupling: Lack("our adapter of exudyn builds no coupling")},
     )
 
     variant: Name

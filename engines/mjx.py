@@ -37,7 +37,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.capability import Capability
+from engines.capability import Capability, Lack
 from engines.contract import (
     EXACT,
     ConvergenceOrder,
@@ -94,7 +94,7 @@ class Mjx(ExtraEngine):
         tuple(kind for kind in MUJOCO_CAPABILITY.joints if kind not in (Skate, Roll)),
         MUJOCO_CAPABILITY.forces,
         lacks={
-            kind: f"a {kind.__name__.lower()} needs a contact, and our adapter of MJX builds none"
+            kind: Lack(f"a {kind.__name__.lower()} needs a contact, and our adapter of MJX builds none")
             for kind in (Skate, Roll)
         },
     )

@@ -34,12 +34,12 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.capability import Capability
+from engines.capability import Capability, Lack
 from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, Size
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled
 from engines.single_run import ExtraEngine, Recorded
-from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, refuse_slots_in_loops, spanning_tree, world_offset
+from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_offset
 from reference.checks import Name, NonNegative, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -53,8 +53,8 @@ PROXIMAL_TOLERANCE = 1e-14  # residual at which the proximal solver ends
 PROXIMAL_ITERATIONS = 20  # largest number of its iterations; a four-bar linkage needs two
 # CPU time [s] of an evaluation with three bodies.
 PINOCCHIO_EVALUATION_COST = 6e-6
-# The engine's constraint for each kind of joint that closes a loop.
-PINOCCHIO_LOOPS = {Pin: "CONTACT_3D", Weld: "CONTACT_6D"}
+# The engine's constraint for a joint that closes a loop; "" for joints that are never such a constraint.
+PINOCCHIO_JOINTS = {Pin: "CONTACT_3D", Weld: "CONTACT_6D", Slot: "", Drive: ""}
 
 
 @dataclass(frozen=True)
@@ -71,13 +71,14 @@ class Pinocchio(ExtraEngine):
     forces_by: ClassVar[Enforcement] = "ours"
     capability: ClassVar[Capability] = Capability(
         "pinocchio",
-        (*PINOCCHIO_LOOPS, Slot, Drive),
+        PINOCCHIO_JOINTS,
         lacks={
-            Rod: "our adapter of pinocchio holds points and frames together, and no distance between points",
-            Gear: "our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic",
-            Skate: "our adapter of pinocchio holds whole points, and no velocity across a blade",
-            Roll: "our adapter of pinocchio builds no contact",
+            Rod: Lack("our adapter of pinocchio holds points and frames together, and no distance between points"),
+            Gear: Lack("our adapter calls constraintDynamics, which refuses pinocchio's JointModelMimic"),
+            Skate: Lack("our adapter of pinocchio holds whole points, and no velocity across a blade"),
+            Roll: Lack("our adapter of pinocchio builds no contact"),
         },
+        lacks_in_loops={Slot: Lack("our adapter of pinocchio builds no slot that closes a loop")},
     )
 
     variant: Name
@@ -108,9 +109,7 @@ class Pinocchio(ExtraEngine):
         return "ours" if joint in spanning_tree(mechanism).drives else "engine"
 
     def model(self, mechanism: Mechanism, dt: float) -> PinocchioModel:
-        tree = spanning_tree(mechanism)
-        refuse_slots_in_loops(tree, "pinocchio")
-        return PinocchioModel(tree, dt, self.integrator, self.correction)
+        return PinocchioModel(spanning_tree(mechanism), dt, self.integrator, self.correction)
 
 
 class PinocchioModel:
@@ -182,7 +181,7 @@ class PinocchioModel:
             body = None if name is None else self.mechanism.body_index(name)
             offset = np.array(world_offset(self.mechanism, name, point)) - self.anchors[body]
             ends += [self.joints[body], self._placed(offset)]
-        kind = getattr(self.pin.ContactType, PINOCCHIO_LOOPS[type(joint)])
+        kind = getattr(self.pin.ContactType, PINOCCHIO_JOINTS[type(joint)])
         loop = self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
         if self.correction:
             gains = self.pin.BaumgarteCorrectorParameters(self.correction**2, 2 * self.correction)

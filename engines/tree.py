@@ -16,7 +16,6 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.contract import Unsupported
 from engines.remembered import by_identity
 from reference.joints import Drive, Joint, Pin, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -324,10 +323,3 @@ def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, flo
         return point
     x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)
     return float(x), float(y)
-
-
-def refuse_slots_in_loops(tree: Tree, engine: str) -> None:
-    """Raises Unsupported for a slot that closes a loop."""
-    for joint in tree.loops:
-        if isinstance(joint, Slot):
-            raise Unsupported(f"joint {joint.name!r}: our adapter of {engine} builds no slot that closes a loop")

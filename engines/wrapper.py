@@ -37,8 +37,8 @@ class EngineWrapper(Engine):
     precision: Any = _forwarded("precision")  # pyright: ignore[reportIncompatibleVariableOverride]
     angle_error: Any = _forwarded("angle_error")  # pyright: ignore[reportIncompatibleVariableOverride]
     steps_in_child: Any = _forwarded("steps_in_child")  # pyright: ignore[reportIncompatibleVariableOverride]
+    capability: Any = _forwarded("capability")  # pyright: ignore[reportIncompatibleVariableOverride]
     forces_by: Any = _forwarded("forces_by")  # pyright: ignore[reportIncompatibleVariableOverride]
-    absent_elements: Any = _forwarded("absent_elements")  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def prepare(self) -> None:
         self.engine.prepare()

@@ -37,7 +37,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engines.capability import Capability
+from engines.capability import Capability, Lack
 from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
@@ -66,12 +66,12 @@ EQUAL_ANGLES = 1e-12  # rad
 def _capability(engine: str, lacks_rod: str = "") -> Capability:
     """The joints that an adapter builds, and no force but gravity; `lacks_rod`: why it builds no rod."""
     lacks = {
-        Gear: f"our adapter of {engine} builds no gear",
-        Skate: f"{engine} has no joint for a velocity across a blade",
-        Roll: f"in {engine} a disc rolls by contact and friction, and our adapter builds no contact",
+        Gear: Lack(f"our adapter of {engine} builds no gear"),
+        Skate: Lack(f"{engine} has no joint for a velocity across a blade"),
+        Roll: Lack(f"in {engine} a disc rolls by contact and friction, and our adapter builds no contact"),
     }
     if lacks_rod:
-        return Capability(engine, (Pin, Weld, Slot, Drive), (), {**lacks, Rod: lacks_rod})
+        return Capability(engine, (Pin, Weld, Slot, Drive), (), {**lacks, Rod: Lack(lacks_rod)})
     return Capability(engine, (Pin, Weld, Slot, Drive, Rod), (), lacks)
 
 

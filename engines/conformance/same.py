@@ -79,13 +79,18 @@ class Isometry:
             row = 0
             for joint in mechanism.joints:
                 own = reaction[:, row : row + joint.size]
-                if isinstance(joint, Pin | Weld):  # a force along the world's axes, and the torque of a weld
-                    own[:, :2] = own[:, :2] @ self._matrix
-                    own[:, 2:] *= sense
-                elif isinstance(joint, Drive | Gear):
-                    own *= sense
-                elif isinstance(joint, Roll):  # its boundaries are traversed the other way
-                    own[:, 0] *= sense
+                match joint:
+                    case Pin() | Weld():  # a force along the world's axes, and the torque of a weld
+                        own[:, :2] = own[:, :2] @ self._matrix
+                        own[:, 2:] *= sense
+                    case Drive() | Gear():
+                        own *= sense
+                    case Roll():  # its boundaries are traversed the other way
+                        own[:, 0] *= sense
+                    case Slot() | Skate() | Rod():
+                        pass
+                    case _:
+                        raise TypeError(f"no isometry of a {type(joint).__name__} is defined here")
                 row += joint.size
             return pose, twist, reaction
 

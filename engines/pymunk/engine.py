@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 import pymunk
 from pymunk.constraints import PivotJoint
 
 from engines import ConvergenceOrder, Enforcement, Engine, EngineWrapper, Instant, NotDeclared, Regularisation, Run
+from engines.capability import Capability
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
 from engines.pymunk import declared
@@ -16,7 +17,7 @@ from engines.pymunk.convergence import MIN_ITERATIONS
 from engines.pymunk.iterations import IterationPlan, Whole, plan_by_rule, plan_with, worst_factor
 from engines.pymunk.joints.roll import SHIPPED_CONTACT, ContactSettings, RollConstruction
 from engines.pymunk.joints.slide import SkateConstruction, SlotConstruction
-from engines.pymunk.model import Model, Settings, build_model
+from engines.pymunk.model import PYMUNK_CAPABILITY, Model, Settings, build_model
 from engines.pymunk.running import PymunkRun
 from reference.checks import Count, Fraction, Name, NonNegative, Positive, Valid, validated
 from reference.joints import Joint, Skate
@@ -60,6 +61,7 @@ class Pymunk(Engine, Valid):
 
     name = "pymunk"
     packages = ("pymunk",)
+    capability: ClassVar[Capability] = PYMUNK_CAPABILITY
 
     variant: Name
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS

@@ -112,8 +112,7 @@ class Capabilities(BuildingTask):
         try:
             self.method.build(mechanism, BUILD_STEP)
         except Unsupported as reason:
-            absent = self.method.absent_elements.intersection(map(type, (*mechanism.joints, *mechanism.forces)))
-            return HAS_NONE if absent else NOT_BUILT, str(reason)
+            return _word_of(reason), str(reason)
         except (AttributeError, ImportError, TypeError) as error:
             return TOO_OLD, f"this release lacks a function that our adapter calls: {describe(error)}"
         rolls = any(isinstance(joint, Skate | Roll) for joint in mechanism.joints)
@@ -124,6 +123,10 @@ class Capabilities(BuildingTask):
                 enforcement.add(self.method.forces_by)
             result = result if enforcement == {"engine"} else CODE
         return result, ""
+
+
+def _word_of(refusal: Unsupported) -> str:
+    return HAS_NONE if refusal.documentation else NOT_BUILT
 
 
 def reason_key(line: str) -> str:
@@ -247,23 +250,31 @@ def comparable_error(row: Measurement | None, field: str = "angle") -> float:
     return getattr(row, field) if usable else inf
 
 
+def word_and_reason(task: Capabilities, answer: Answer, line: str) -> tuple[str, str]:
+    """The word of a line and the reason of a refusal: by the capability table, or by a build that the table allows."""
+    capability = task.method.capability
+    if capability and (refusal := capability.refusal(ELEMENT_EXAMPLES[line])):
+        return _word_of(refusal), str(refusal)
+    return str(answer.values[line]), str(answer.values.get(reason_key(line), ""))
+
+
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A Markdown table with a column for each engine and a line for each element; empty without answers."""
     engines = [task.method for task in answers]
-    lines = (*ELEMENT_EXAMPLES, "reactions", "width")
-    body = [[line, *(str(answer.values[line]) for answer in answers.values())] for line in lines]
+    body = [[line, *(word_and_reason(*pair, line)[0] for pair in answers.items())] for line in ELEMENT_EXAMPLES]
+    body += [[line, *(str(answer.values[line]) for answer in answers.values())] for line in ("reactions", "width")]
     body.append(["version", *(engine_versions([engine]) for engine in engines)])
     return markdown(["", *(engine.name for engine in engines)], body, left=len(engines) + 1) if engines else ""
 
 
 def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
     """(engine, line, word of the table, reason) of each element that is not built."""
-    return [
-        (task.method.name, line, str(answer.values[line]), reason)
+    found = [
+        (task, line, *word_and_reason(task, answer, line))
         for task, answer in answers.items()
         for line in ELEMENT_EXAMPLES
-        if (reason := str(answer.values.get(reason_key(line), "")))
     ]
+    return [(task.method.name, line, word, reason) for task, line, word, reason in found if reason]
 
 
 def charted_methods(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
