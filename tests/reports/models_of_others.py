@@ -1,7 +1,7 @@
-"""Models of other authors, as a user would try them: the mechanism that is read, or the reason of a refusal.
+"""Reads models of other authors: the size of the mechanism, or the reason of a refusal.
 
-`python -m tests.reports.models_of_others` writes the table of the page `your_model`. It asks pip for two packages,
-unpacks them, and runs pymunk's examples without their windows; nothing of theirs is kept.
+`python -m tests.reports.models_of_others` writes the table of the page `your_model`. It downloads two packages with pip
+into a temporary folder, and runs pymunk's examples without their windows.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ except BaseException as reason:
 
 @dataclass(frozen=True)
 class Found:
-    """What became of a model: how many `bodies` it is read as and what had to be switched off, or else the reason."""
+    """The result of a model: its number of `bodies` and the elements to be switched off, or the reason of a refusal."""
 
     source: str
     model: str
@@ -80,7 +80,7 @@ class Found:
 
 
 def tried(reading) -> list[str]:
-    """[bodies, switched off, reason], with the advice of each refusal followed; `reading`(without) gives a Reading."""
+    """Read a model, and switch off the elements that refusals name; `reading`(without) gives a Reading."""
     without: list[str] = []
     while True:
         try:
@@ -98,7 +98,7 @@ def tried(reading) -> list[str]:
 
 
 def spaces() -> Iterator[Found]:
-    """pymunk's examples that step a space without a window; the others make none here."""
+    """The spaces of pymunk's examples that step without a window."""
     for path in sorted(EXAMPLES.glob("*.py")):
         if path.name.startswith("_"):
             continue
@@ -117,7 +117,7 @@ def spaces() -> Iterator[Found]:
 
 
 def unpacked(folder: Path) -> bool:
-    """Gymnasium's and dm_control's files below a folder; False where pip finds no packages."""
+    """Unpack Gymnasium and dm_control into a folder; False if pip can't download them."""
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", str(folder)]
     if subprocess.run([*command, "gymnasium", "dm_control"], capture_output=True).returncode:
         return False
@@ -128,7 +128,7 @@ def unpacked(folder: Path) -> bool:
 
 
 def models(folder: Path) -> Iterator[Found]:
-    """Models in MuJoCo's own package, and in the two that `unpacked` has put below a folder."""
+    """The models in MuJoCo's package, and in the packages that `unpacked` has written."""
     places = {
         "mujoco": Path(mujoco.__file__).parent / "testdata",
         "gymnasium": folder / "gymnasium/gymnasium/envs/mujoco/assets",

@@ -1,4 +1,4 @@
-"""Engines and functions that treat their own process badly: they test the supervisor, not the reports."""
+"""Engines and functions that crash, hang or change their process, for tests of the supervisor."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class RoughToy(Toy):
         return first
 
     def hold(self, then: str) -> None:
-        """Hold a lock on a file as long as the process lives."""
+        """Hold a lock on a file until the process ends."""
         import fcntl
 
         file = os.open(Path(self.folder) / then, os.O_CREAT | os.O_WRONLY)
@@ -102,7 +102,7 @@ DAMAGE: list[str] = []
 
 
 def act(name: str) -> object:
-    """The result of one of the actions without an engine, or a result of another kind."""
+    """Do one of the actions and return its result."""
     match name:
         case "process":
             return os.getpid()
@@ -119,12 +119,12 @@ def act(name: str) -> object:
 
 
 def dies(*_: object) -> None:
-    """A worker that is killed before it reports that it is ready."""
+    """A worker that ends before it reports that it is ready."""
     os.kill(os.getpid(), signal.SIGKILL)
 
 
 def is_free(file: Any) -> bool:
-    """Whether no process holds a lock on a file: processes that have ended may still have their number."""
+    """Whether no process holds a lock on a file; unlike a process id, the lock ends with the process."""
     import fcntl
 
     try:
@@ -135,7 +135,7 @@ def is_free(file: Any) -> bool:
 
 
 def wait_until(is_true: Callable[[], bool]) -> None:
-    """Wait for a condition; AssertionError after far more time than a loaded machine needs for it."""
+    """Wait for a condition; AssertionError after a time that is long even for a loaded machine."""
     end = time.monotonic() + 300.0
     while not is_true():
         assert time.monotonic() < end, "it did not come true"
@@ -143,7 +143,7 @@ def wait_until(is_true: Callable[[], bool]) -> None:
 
 
 def fork_server() -> int | None:
-    """The process id of multiprocessing's fork server, which it has no public name for."""
+    """The process id of multiprocessing's fork server, for which there is no public name."""
     server: Any = forkserver._forkserver
     return server._forkserver_pid
 

@@ -1,4 +1,4 @@
-"""Mistakes in arguments are refused in a sentence that names the argument; valid values of other types are taken."""
+"""A bad argument is refused with a sentence that names it; valid values of other types are accepted."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from tests.mechanisms import SCENES_OF_LIMITS, four_bar
 NO_NUMBERS = [None, object(), {}, "1.5", b"1", 1 + 2j, True, np.bool_(False), [1.0], np.array([1.0, 2.0]), 10**400]
 NOT_FINITE = [math.nan, math.inf, np.float32("inf")]
 NO_ARRAYS = ["abc", ["1.5"], [1.0, None], [[1.0], [1.0, 2.0]], np.array([object()]), {1.0}, iter([1.0]), 1j]
-# By kind of argument: (annotation, values that are refused, values that are taken).
+# Kind of argument -> (annotation, refused values, accepted values).
 KINDS = [
     (float, [*NO_NUMBERS, *NOT_FINITE, np.timedelta64(1, "s")], [0.5, 1, np.float32(0.5), np.array(0.5)]),
     (int, [*NO_NUMBERS[:-1], *NOT_FINITE, 2.0, np.float64(2.0)], [1, np.int32(1), np.array(1)]),
@@ -67,7 +67,7 @@ def test_every_kind_of_argument_has_its_bounds(annotation, refused, taken):
 
 
 POINTS = ((0.0, 0.5), (1.0, 0.0))
-# (entry point with one argument left out, the argument's name, a value that users gave or may give).
+# (entry point without one argument, the name of this argument, a bad value of it).
 MISTAKES: dict[str, tuple[Any, str, Any]] = {
     "mass of zero": (lambda value: Body("b", value, 1.0, (0.0, 0.0, 0.0)), "mass", 0.0),
     "pose without an angle": (lambda value: Body("b", 1.0, 1.0, value), "pose", (0.0, 0.0)),
@@ -101,7 +101,7 @@ def test_arguments_passed_by_name_are_checked_as_those_passed_by_position():
             call()
 
 
-def test_lists_and_numbers_of_numpy_are_taken():
+def test_lists_and_numbers_of_numpy_are_accepted():
     linkage = FourBar(0.4, np.float64(0.5), 0.6, [0.5, 0])  # type: ignore[arg-type]
     assert repr(linkage) == "FourBar(crank=0.4, coupler=0.5, rocker=0.6, ground=(0.5, 0.0))"
     assert linkage.angles([1.0], np.int64(1))[0] == linkage.angles(1.0)[0]
@@ -118,7 +118,7 @@ ONE_OF_EACH = {engine.name: engine for engine in registry.ENGINES}.values()
 
 
 @pytest.mark.parametrize("engine", [*ONE_OF_EACH, Extrapolated(registry.ENGINES[0], "e", (1, 2), (1,))])
-def test_every_engine_takes_steps_and_counts_of_numpy_and_refuses_others(engine):
+def test_every_engine_accepts_steps_and_counts_of_numpy_and_refuses_bad_ones(engine):
     mechanism = four_bar()
     plain = engine.build(mechanism, 0.0009765625)(2, 1)
     build: Any = engine.build  # the types of these arguments are wrong on purpose

@@ -1,4 +1,4 @@
-"""`crosscheck bench` measures the same motions as the runs, and counts each part once."""
+"""`crosscheck bench` measures the motions of the runs, and counts each part of the CPU time once."""
 
 import pytest
 
@@ -26,10 +26,10 @@ def test_the_time_of_a_grid_is_counted_once_by_part_by_method_and_by_scene():
     assert sum(spent["part"].values()) == pytest.approx(sum(spent["method"].values()))
 
 
-def test_the_judges_figures_are_of_runs_that_are_right_and_need_numba(monkeypatch):
+def test_the_timed_runs_of_the_judge_are_accurate_and_need_numba(monkeypatch):
     if loading.installed():
         errors = [value for name, value, _ in measure_judge(links=(3,), turns=1) if name.endswith("its error")]
-        # Order 4 at 1e-3 s; order 8 at 1e-2 s and half of it: less than a 2^8th, and rounding; and a tolerance.
+        # Bounds: order 4 with a step of 1e-3 s; order 8 with 5e-3 s and 1e-2 s; an adaptive step.
         assert errors[0] < 1e-6
         assert errors[1] < 1e-9
         assert errors[2] < errors[1] / 20
@@ -39,7 +39,7 @@ def test_the_judges_figures_are_of_runs_that_are_right_and_need_numba(monkeypatc
         measure_judge()
 
 
-def test_truths_stand_by_their_cost_and_a_scene_without_one_is_left_out():
+def test_exact_motions_are_sorted_by_cost_and_a_scene_without_one_is_left_out():
     scenes = [BarPendulum(duration=0.1), LinkPendulum(links=7, duration=0.51), SquareOnCatenaries()]
     rows = measure_truths(scenes)
     assert {name.removeprefix("truth of ").partition("(")[0] for name, _, _ in rows} == {"BarPendulum", "LinkPendulum"}

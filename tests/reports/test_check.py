@@ -1,4 +1,4 @@
-"""`crosscheck check`: its verdicts on models whose answers are known, and advice that can be copied."""
+"""`crosscheck check`: its verdicts on models with known answers, and advice that can be copied."""
 
 from __future__ import annotations
 
@@ -65,14 +65,14 @@ def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tol
 
 @pytest.fixture(scope="module")
 def shipped(tmp_path_factory):
-    """The check of the four-bar with MuJoCo's default settings: several tests read it."""
+    """The check of the four-bar with MuJoCo's default settings, which several tests use."""
     return found_in(tmp_path_factory.mktemp("shipped"), FOUR_BAR)
 
 
 def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copied(tmp_path, shipped):
     result = shipped
     assert not result.met
-    # The soft loop's share follows from a law without a step: it explains most of the error, the step the rest.
+    # The declared softness of the loop explains most of the error, and the step the remaining error.
     parts = result.parts
     assert parts.softness > result.tolerance
     assert parts.rest < 0.3 * parts.step
@@ -92,7 +92,7 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
 
 
 def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion(tmp_path):
-    """A rate of d / I, 1e6 / s here: an explicit method once overflowed in a step of the motion's own length."""
+    """The rate of the damper is d / I = 1e6 / s, for which an explicit method overflows."""
     damped = FOUR_BAR.replace('axis="0 1 0"', 'axis="0 1 0" damping="5"').replace('size="0.02"', 'size="0.002"')
     result = found_in(tmp_path, damped)
     assert 0 < result.parts.softness < 1e-3
@@ -106,7 +106,7 @@ def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tm
     assert line.startswith("<mujoco><option ")
     again = found_in(tmp_path, text.replace("</robot>", f"{line}</robot>"), "chain.urdf", "chain.urdf", tolerance=1e-6)
     assert again.met
-    # Where the file has such an element, a second one is an error of MuJoCo's: then the option alone is printed.
+    # MuJoCo refuses a second element of this kind, so that only the option is printed if the file has one.
     assert again.table[0].change.lines[0].startswith("<option ")
 
 
@@ -117,7 +117,7 @@ CLASSES = '<default><default class="own"><joint damping="0"/></default></default
     ("place", "words"), [("", 'solref="0.04 1"'), (CLASSES, 'class="own"')], ids=["values of its own", "of a class"]
 )
 def test_an_equality_that_a_default_does_not_reach_is_named_in_the_advice(tmp_path, place, words):
-    """A class has copied its parent's values before the lines come, so the model would stay soft without a word."""
+    """A default class that is read before the advised lines keeps its own values, so the model would remain soft."""
     model_text = FOUR_BAR.replace("<worldbody>", place or "<worldbody>", 1).replace("<connect", f"<connect {words}")
     lines = answer_section(found_in(tmp_path, model_text)).code
     assert "an equality of a class, or with its own values, needs these values there" in lines[-1]
@@ -131,7 +131,7 @@ def test_an_equality_that_a_default_does_not_reach_is_named_in_the_advice(tmp_pa
 def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp_path):
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
     result = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
-    # First order: about a step times a rate of 10 rad/s; the crank's own forces are unknown.
+    # The error is of first order, about the step times a rate of 10 rad/s. The forces of the crank are unknown.
     assert 0 < result.own_errors.worst["reaction"] < 0.1
     assert (
         "motion",
@@ -183,17 +183,17 @@ def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
     for rate in (3.0, 2.0):
         twist = np.array([[0.0, 0.0, rate]])
         result = accelerations(at_rate, at_rate.pose, twist, 0.0, give)
-        # Rows without compliance: the rate's own row is -damping times the slip, exactly.
+        # The row of a prescribed rate has no compliance, so that its acceleration is exactly -damping times the slip.
         assert result[0] == pytest.approx([0.0, 0.0, 10.0 * (3.0 - rate)], abs=1e-12)
 
 
-def test_freedoms_modes_and_singular_positions_are_told():
+def test_freedoms_modes_and_singular_positions_are_reported():
     mechanism = PENDULUM_1.mechanism()
     facts = compute_facts(mechanism, reference_motion(mechanism, 20, 0.01).trajectory)
     assert facts.freedoms == (1, 1)
     assert facts.redundant == 0
     assert facts.singular == ()
-    # A parallelogram is in line at the start: its rows have one more dependence there than elsewhere.
+    # The parallelogram is flat at the start, where its rows have one more dependence than at other poses.
     line = FOUR_BAR.replace("0 0 0 0 0 0.3", "0 0 0 .3 0 0").replace('pos="0 0 0.3"', 'pos=".3 0 0"')
     line = line.replace("0 0 0 0.8 0 0.3", "0 0 0 .7 0 0").replace("0 0 0 0.1 0 0.6", "0 0 0 .3 0 0")
     line = line.replace('anchor="0.8 0 0.3"', 'anchor=".7 0 0"')
@@ -220,14 +220,14 @@ def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
 def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_not():
     regular = reference_motion(PENDULUM_1.mechanism(), 200, 0.01)
     assert regular.horizon == regular.trajectory.t[-1]
-    # 3,000 radians: an initial error of the rate grows by this factor, and so does the allowed error.
+    # After 3,000 radians an initial error of the rate has grown by this factor, and the allowed error too.
     spinning = reference_motion(Disc(rate=1000.0).mechanism(), 300, 0.01)
     assert spinning.growth[-1] > 500
     assert spinning.horizon == pytest.approx(3.0, rel=1e-12)
     links = PENDULUM_2.mechanism()
     wild = replace(links, bodies=tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in links.bodies))
     chaotic, expected = reference_motion(wild, 1000, 0.015), reference_motion(wild, 1000, 0.015, tolerance=1e-10)
-    # A few times of the mechanism, which is 0.3 s: it is no sooner wild.
+    # The motion is regular for a few time scales of the mechanism, which is 0.3 s.
     t = chaotic.trajectory.t
     assert 1.0 < chaotic.horizon < t[-1]
     is_before_horizon = t < chaotic.horizon
@@ -251,7 +251,7 @@ def test_the_report_can_be_read_by_people_and_programs(shipped):
     assert len(screen) <= 30
     assert max(map(len, screen)) <= 120
     page = rendering.html("four bar", reported)
-    # As elements of one page the second pictures would be clipped by the first's frame.
+    # As inline SVG, the second picture would be clipped by the frame of the first one.
     assert page.count("data:image/svg+xml;base64,") == page.count("<img ") == 2
     assert "<svg" not in page
     files = {title: f"{key}.svg" for key, (title, _) in pictures.items()}

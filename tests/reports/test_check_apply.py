@@ -1,4 +1,4 @@
-"""`crosscheck check` writes its advice into a user's file, searches settings, and checks folders of models."""
+"""`crosscheck check` writes advised settings into a user's file, searches for settings, and checks folders."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\
 
 
 def checked(folder, word, **terms) -> CheckReport:
-    """The answer in this process, of half a second of motion."""
+    """The answer of a check in this process over 0.5 s of motion."""
     check = run_check(CheckRequest(word, str(folder), 0.5, **terms))
     assert isinstance(check, CheckReport), check
     return check
@@ -56,7 +56,7 @@ def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_
     assert result.data["assumed"] == ""
     assert any("stopped before the first step" in note["reason"] for note in result.data["notes"])
     assert result.data["applied"]["error"] == pytest.approx(result.data["advised"]["error"], rel=1e-6)
-    # A stricter tolerance, from the file that was written: its lines are replaced, not added a second time.
+    # With a stricter tolerance, the lines in the written file are replaced and not added again.
     other = checked(tmp_path, word.replace("x.py", "y.py"), tolerance=1e-3, search=True, apply="y.py")
     assert other.data["applied"]["error"] <= 1e-3
     text_before, block = (tmp_path / "y.py").read_text().split(BEGIN)
@@ -80,7 +80,8 @@ def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
         float(subprocess.check_output([sys.executable, "-c", code], cwd=tmp_path).split()[-1])
         for code in (space, space.replace(" y;", " x as y;"))
     ]
-    # With two parts that start half a part ahead a quarter more; with the force in one part alone three quarters.
+    # The parts start half a part earlier, so that the speed is larger by a quarter. If the force acted in only one
+    # part, the speed would be three quarters.
     assert speeds[0] == pytest.approx(speeds[1], rel=0.3)
 
 
@@ -110,10 +111,10 @@ def test_quick_tries_four_settings_and_all_are_run_if_asked_for_with_the_same_ca
     option_sets = ({"quick": True}, {}, {"everything": True})
     quick, total, every = (checked(tmp_path, "model.xml", tolerance=1e-4, **term).data for term in option_sets)
     assert len(quick["tried"]) == 1 + 4
-    # The declared motion is known to a thousandth of itself at the rougher tolerance.
+    # With the larger tolerance of --quick the declared motion has a relative error of 1e-3.
     assert quick["parts"]["softness"] == pytest.approx(total["parts"]["softness"], rel=1e-3)
     assert {setting["words"] for setting in total["tried"]} < {setting["words"] for setting in every["tried"]}
-    # Measured times decide which of the two is cheaper, but both are accurate enough.
+    # Which of the two is cheaper depends on measured times; both are accurate enough.
     assert max(data["advised"]["error"] for data in (total, every)) <= 1e-4
     assert total["next_decade"] is not None
     assert quick["error"] == total["error"]

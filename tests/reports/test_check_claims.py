@@ -1,4 +1,4 @@
-"""What `crosscheck check` concludes: advice, parts of the error and facts follow from numbers; one golden text."""
+"""The conclusions of `crosscheck check`: advice, parts of the error, facts, and a golden text of the report."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ from tests.reports.test_check import FOUR_BAR, INPUTS, PENDULUM, found_in
 
 @pytest.fixture(scope="module")
 def soft(tmp_path_factory):
-    """The check of a four-bar as MuJoCo is shipped."""
+    """The check of a four-bar with MuJoCo's default settings."""
     return found_in(tmp_path_factory.mktemp("soft"), FOUR_BAR, duration=0.2)
 
 
 @pytest.fixture(scope="module")
 def swing(tmp_path_factory):
-    """The check of a pymunk pendulum whose step is not given."""
+    """The check of a pymunk pendulum without a given step."""
     return found_in(tmp_path_factory.mktemp("swing"), PENDULUM, "swing.py", "swing.py:make", tolerance=1e-2)
 
 
 def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: float) -> CheckResult:
-    """A copy of the check with settings of these errors and costs, the user's first."""
+    """A copy of a check whose table has these errors and costs, those of the user's settings first."""
     first = found.table[0]
     table = [
         replace(
@@ -68,7 +68,7 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
 @pytest.mark.parametrize(
     ("rows", "advised", "tenth"),
     [
-        # (error, cost) of the user's own settings first; a tenth is counted from the advised error, not the tolerance.
+        # (error, cost) of each setting, the user's first. A tenth refers to the advised error, not to the tolerance.
         ([(1e-5, 1.0), (1e-6, 2.0)], 0, 1),
         ([(1e-5, 1.0), (2e-5, 0.5)], 1, None),
         ([(1e-3, 1.0), (2e-5, 0.5), (1e-5, 3.0)], 1, None),
@@ -93,7 +93,7 @@ def test_the_tolerance_is_met_by_an_error_of_its_size_and_by_no_larger_one(soft)
 
 
 def test_the_users_own_settings_are_in_the_table_however_long_they_took(soft):
-    """A run of more than LONGEST leaves no time for others, and is itself one of the settings."""
+    """A run that exhausts the budget leaves no time for other settings, but is itself in the table."""
     reading, slow = soft.reading, replace(soft.own, stepping=50.0)
     truth = soft.judge.trajectory
     (only,) = run_settings_sweep(reading, truth, 100, 1, slow, lambda number, count: None, SweepPlan(0.0), 1e-4)
@@ -102,7 +102,7 @@ def test_the_users_own_settings_are_in_the_table_however_long_they_took(soft):
 
 
 def test_the_text_of_the_report(soft, golden):
-    """With errors and costs of our own, since those of a run differ in the last digits from one machine to another."""
+    """Errors and costs are fixed here, since those of a run depend on the machine."""
     errors_of_judge = replace(soft.judge_errors, of=dict.fromkeys(soft.own_errors.of, 1e-12 + 0 * soft.judge_errors.t))
     rows = [(1e-3, 1.0), (3e-5, 2.0), (3e-6, 6.0)]
     parts = replace(soft.parts, softness=8e-4, step=2e-4, rest=5e-5, smallest=1e-4, falling=True)
@@ -127,14 +127,14 @@ def test_the_text_of_the_report(soft, golden):
 
 
 def off_by(found: CheckResult, size: float, step: float):
-    """The user's own settings at another step, with a run that is this far off the judge's motion [m, rad]."""
+    """The user's settings at another step, with a run whose poses differ by this from the ideal motion [m, rad]."""
     truth = found.judge.trajectory
     run = replace(truth, pose=truth.pose + size * np.array([0.0, 0.0, 1.0]))
     return replace(found.table[0], run=run, change=replace(found.table[0].change, dt=step))
 
 
 @pytest.mark.parametrize(
-    # It falls if the last of the steps takes a quarter of it away.
+    # The error still falls if the smallest step reduces it by more than a quarter.
     ("sizes", "falls"),
     [([4e-3, 2e-3, 1.4e-3], True), ([4e-3, 2e-3, 1.6e-3], False), ([1e-3, 2e-3], False), ([7e-3], False)],
 )
@@ -148,7 +148,7 @@ def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, s
 
 
 def four_bar(crank: float, coupler: float, rocker: float, ground: float, start: float, rate: float, drive: bool):
-    """A weightless one whose crank turns at a constant rate, with its motion over 3 s."""
+    """A four-bar without gravity whose crank turns at a constant rate, and its motion over 3 s."""
     lengths = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": (ground, 0.0)}
     scene = DrivenFourBar(**lengths, start=start, rate=rate, gravity=(0.0, 0.0))
     mechanism, motion = scene.mechanism(), scene.motion(np.linspace(0.0, 3.0, 301))
@@ -160,7 +160,7 @@ def four_bar(crank: float, coupler: float, rocker: float, ground: float, start: 
 
 @pytest.mark.parametrize("drive", [True, False])
 def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
-    """There the diagonal from the crank's foot to the rocker's tip is the sum, or the difference, of the two."""
+    """At a dead centre, crank length plus or minus coupler length is the distance from crank pivot to rocker end."""
     a, b, c, d, start, rate = 0.2, 0.8, 0.5, 0.9, 0.3, 2.0
     facts = compute_facts(*four_bar(a, b, c, d, start, rate, drive))
     wanted = []
@@ -169,14 +169,14 @@ def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
         wanted.append(((line + turn - start) % (2 * np.pi)) / rate)
     result = facts.dead_centres
     assert {name for _, name in result} == {"rocker"}
-    # Linear between samples of 10 ms: the times are good to much less than one.
+    # The times are interpolated linearly between samples 10 ms apart.
     assert [t for t, _ in result] == pytest.approx(sorted(t for t in wanted if t <= 3.0), abs=1e-3)
     assert len(result) >= 1
     assert facts.singular == ()
 
 
 def test_the_moment_in_which_a_parallelogram_is_flat_is_near_singular():
-    """Flat at half a turn of the crank, where its rows depend on one another, and at no other time in 3 s."""
+    """The parallelogram is flat after half a turn of the crank; its rows are dependent there, and only there."""
     facts = compute_facts(*four_bar(0.3, 0.8, 0.3, 0.8, start=0.4, rate=1.0, drive=False))
     ((at, size),) = facts.singular
     assert at == pytest.approx(np.pi - 0.4, abs=0.011)
@@ -185,7 +185,7 @@ def test_the_moment_in_which_a_parallelogram_is_flat_is_near_singular():
 
 @pytest.mark.parametrize("rate", [1e-3, 1e3])
 def test_accelerations_that_should_be_zero_are_compared_with_those_of_the_mechanisms_own_size(rate):
-    """A wheel that turns steadily: a thousandth of the square of its rate is a thousandth in any unit of time."""
+    """A wheel at a constant rate: an error of a thousandth of rate squared is 1e-3 in any unit of time."""
     wheel = Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, rate))
     mechanism = Mechanism((wheel,), (Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0)),), (0.0, 0.0))
     off = np.array([[0.0, 0.0, 1e-3 * mechanism.time_scale**-2]])
@@ -204,7 +204,7 @@ def test_what_opens_by_an_angle_is_told_in_radians():
     opening = find_opening(mechanism, run)
     assert opening is not None
     assert (opening.gap, opening.unit, opening.t) == (pytest.approx(0.2), "rad", 1.0)
-    # A kilometre long, 1 m of it is less than 0.2 rad.
+    # In a mechanism of 1 km a gap of 1 m is smaller than one of 0.2 rad.
     bodies = (replace(body, name="cabin", pose=(1e3, 0.0, 0.0)), body)
     joints = (*joints, Pin("cable", None, "cabin", (0.0, 0.0), (-1e3, 0.0)))
     pose = np.array([[[1e3, 0.0, 0.0], [0.0, 0.0, 0.0]], [[1001.0, 0.0, 0.0], [0.0, 0.0, 0.2]]])
@@ -218,7 +218,7 @@ def test_what_opens_by_an_angle_is_told_in_radians():
 
 
 def test_reactions_that_rigid_bodies_do_not_determine_are_not_compared():
-    """A beam between two pins: its axial force is indeterminate; the transverse force on each pin is unique."""
+    """The axial force of a beam between two pins is indeterminate; the transverse force on each pin is unique."""
     beam = Body("beam", 2.0, 0.2, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     other = Body("bob", 1.0, 0.1, (2.0, -1.0, 0.0), (0.0, 0.0, 0.0))
     joints = (
@@ -246,7 +246,7 @@ def test_reactions_that_rigid_bodies_do_not_determine_are_not_compared():
 
 def test_the_error_of_the_energy_is_relative_to_the_largest_kinetic_energy(soft):
     truth, mechanism = soft.judge.trajectory, soft.reading.mechanism
-    # Lifting everything by 1 mm adds m g h, in the largest kinetic energy.
+    # Lifting all bodies by 1 mm changes the energy by m g h, relative to the largest kinetic energy.
     lifted = replace(truth, pose=truth.pose + np.array([0.0, 1e-3, 0.0]))
     weight = sum(body.mass for body in mechanism.bodies) * 9.81 * 1e-3
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1)).max()
@@ -300,7 +300,7 @@ def test_the_impulse_that_starts_a_motor_is_no_error_of_forces_or_energy():
 
 
 def test_a_rod_that_only_the_second_order_locks_is_refused():
-    """In line with the hinge and pushed across: no force of a rigid rod holds it, and no motion is allowed."""
+    """A rod in line with a hinge can't bear a transverse force, but the rigid joints allow no motion."""
     space = Space()
     space.gravity = (0, -9.81)
     body = MunkBody(2, 0.2)

@@ -1,7 +1,7 @@
-"""Verdicts of `crosscheck check` on models of other people, against integrations that share no code with the judge.
+"""Verdicts of `crosscheck check` on users' models, compared with integrations that share no code with the judge.
 
-Models in `inputs` are rebuilt after public reports of users, named in their first lines. The engine is run here from
-the file itself, and compared with multipliers in MuJoCo's tree or in absolute coordinates.
+The models in `inputs` follow public reports of users, which are named in their first lines. The engine runs the file
+itself; the ideal motion is integrated with multipliers, in MuJoCo's joint coordinates or in absolute coordinates.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -40,19 +40,19 @@ from tests.reports.test_check import FOUR_BAR, INPUTS
 STEP = 1e-3  # s, of pymunk
 QUICK = SweepPlan(5.0, quick=True)
 G = 9.81
-# The judge is good to 1e-10 and both integrations to 1e-11; the motions spread that up to 200 times, and the smallest
-# error here is 1e-4. Measured: 2e-7.
+# The errors of the judge are 1e-10 and those of both integrations 1e-11. The motions amplify them up to 200 times, and
+# the smallest compared error is 1e-4. The measured difference was 2e-7.
 CLOSE = 1e-6
 
 
 def own_errors(poses: NDArray[Any], truth: NDArray[Any]) -> tuple[float, float]:
-    """The largest error of angles [rad] and of places [m] of poses (times, bodies, 2 or 3 places and an angle)."""
+    """The largest errors of angles [rad] and positions [m]; a pose is (2 or 3 coordinates, angle)."""
     off = np.abs(poses - truth)
     return off[..., -1].max(), np.linalg.norm(off[..., :-1], axis=-1).max()
 
 
 def of_mujoco(path: Path, t: NDArray[Any]) -> tuple[float, float, int]:
-    """Errors of the model as it is at instants t, and the freedoms of the ideal one."""
+    """The errors of the unchanged model at instants t, and the number of freedoms of the ideal model."""
     model = mujoco.MjModel.from_xml_path(str(path))
 
     def begin() -> Any:
@@ -90,7 +90,7 @@ def of_mujoco(path: Path, t: NDArray[Any]) -> tuple[float, float, int]:
 
 
 def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
-    """Errors of the script's space, stepped as it is."""
+    """The errors of the unchanged space of the script."""
     truth = Equations(runpy.run_path(str(path))["space"]).motion(t)
     space, run = runpy.run_path(str(path))["space"], []
     for _ in t:
@@ -101,14 +101,14 @@ def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
 
 
 def checked(path: Path, duration: float) -> CheckResult:
-    """Check the settings as they are; no other settings are tried."""
+    """Check only the settings of the model."""
     step = STEP if path.suffix == ".py" else None
     return check(
         read_user_model(path.name, path.parent, ReadingTerms(step=step)), path.name, duration, 1e-4, plan=SweepPlan(0.0)
     )
 
 
-# (name, duration [s], freedoms, length [m] of the mechanism where a far end of a spring could enter it).
+# (name, duration [s], freedoms, length of the mechanism [m] if the far end of a spring could affect it).
 MUJOCO_MODELS = [
     ("fast_motor", 1.0, 1, None),
     ("jansen_leg", 1.0, 1, None),
@@ -157,7 +157,7 @@ def test_the_error_of_a_pymunk_script_is_that_of_an_independent_integration(name
 
 
 def test_a_plane_and_an_order_of_bodies_change_no_error(tmp_path):
-    """The excavator with its bodies in reverse order, in a plane across all axes."""
+    """The excavator with its bodies in reverse order, in a plane that is oblique to all axes."""
     tree = xml.parse(INPUTS / "excavator.xml")
     world, option = tree.find("worldbody"), tree.find("option")
     assert world is not None
@@ -189,7 +189,7 @@ def test_one_freedom_goes_on_through_a_dead_centre_and_is_judged_to_the_end():
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
 def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arrives(scale):
-    """Where two curves cross: there the multipliers of one row are lost, and velocities go on."""
+    """At a dead centre two configuration curves cross and a multiplier is undefined, but velocities are continuous."""
     crank, start = 0.2 * scale, np.arctan2(0.16, 0.12)
     names, at = ("left", "rod", "right"), (0.0, 1.0 * scale)
     pin = [np.array([x, 0.0]) for x in at]
@@ -222,7 +222,7 @@ def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arriv
     assert np.abs(judge.trajectory.pose[:, 0, 2] - turned).max() < 1e-7
     assert judge.horizon == judge.trajectory.t[-1]
     assert not judge.cut
-    # Forces and accelerations belong to the motion: M a = f + J^T F.
+    # Forces and accelerations satisfy M a = f + J^T F.
     assert np.isfinite(judge.trajectory.reaction).all()
 
 
@@ -256,7 +256,7 @@ def test_a_locked_space_is_said_to_be_locked(second):
 
 @pytest.mark.parametrize(("scale", "far"), [(1.0, 0.0), (1e-6, 1e3), (1e6, 1e3)])
 def test_no_far_point_of_a_line_enters_the_length_or_the_time(scale, far):
-    """A block in a groove of a swinging bar, with spring and damper along it: from the near end and from far away."""
+    """A block in a groove of a swinging bar, with a spring and a damper whose fixed end is near or far away."""
     bar, block = (
         Body("bar", 1.0, 0.1 * scale**2, (0, 0, 0.3)),
         Body("block", 0.5, 1e-3 * scale**2, (0.4 * scale * np.cos(0.3), 0.4 * scale * np.sin(0.3), 0.3)),
@@ -271,9 +271,9 @@ def test_no_far_point_of_a_line_enters_the_length_or_the_time(scale, far):
         (spring, Damper("damper", *ends, 2.0)),
     )
     assert linkage.length_scale == pytest.approx(0.1 * scale)
-    # At the slot's point the bar feels a force as 1 / m + r^2 / I, and the block as 1 / m.
+    # At the point of the slot the inverse inertia of the bar is 1 / m + r^2 / I, that of the block 1 / m.
     assert linkage.time_scale == pytest.approx(1 / np.sqrt(200 * (1 + 0.1**2 / 0.1 + 2)))
-    # Alone on the ground the extension is all that has a length.
+    # For a single block on the ground, the extension of the spring is the only length.
     groove = Slot("groove", None, "block", (-far * scale, 0.0), 0.0, (0.0, 0.0))
     stored = Spring("spring", None, "block", (-far * scale, 0.0), (0.0, 0.0), 20.0, (far + 0.5) * scale)
     alone = Mechanism((Body("block", 0.5, 1.0, (0.2 * scale, 0.0, 0.0)),), (groove,), (0.0, 0.0), (stored,))
@@ -332,7 +332,7 @@ LOOPS = {
 
 @pytest.mark.parametrize("loop", LOOPS)
 def test_the_declared_softness_of_a_loop_follows_the_diagonal_that_the_flag_selects(loop):
-    """In MuJoCo's rows, the world's axes: in a turned plane the compliance of a loop is no multiple of one number."""
+    """MuJoCo's rows are along the world's axes, so that in a rotated plane the compliance of a loop is a matrix."""
     run, soft = {}, {}
     turned = "20 35 10" if "connect" in loop else "0 0 0"
     for flag in ("enable", "disable"):

@@ -1,4 +1,4 @@
-"""A cluster gives the same rows as the pool, each once, even if workers die; other versions are refused."""
+"""A cluster gives the same rows as the pool, each once, even if workers are killed; other versions are refused."""
 
 from __future__ import annotations
 

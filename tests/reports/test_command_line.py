@@ -1,4 +1,4 @@
-"""The program's ends: its exit status and one line without traceback, for failing files, closed pipes and Ctrl-C."""
+"""The exit status and the one-line message of the program after errors of files, closed pipes and Ctrl-C."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ ONE_CELL = ("free_four_bar", "--engine", "lagrange", "--variant", "euler baumgar
 
 
 def call(*words):
-    """The exit status of the command line, in this process."""
+    """Run a command in this process and return its exit status."""
     with pytest.raises(SystemExit) as ending:
         program.main([str(label) for label in words])
     return ending.value.code
@@ -48,7 +48,7 @@ def environment():
 
 
 def one_line(err):
-    err = re.sub(r"^compiling the judge's machine code.*\n", "", err)  # the first program of a new installation
+    err = re.sub(r"^compiling the judge's machine code.*\n", "", err)  # printed once after an installation
     assert len(err.strip().splitlines()) == 1, err
     assert err.startswith("crosscheck: ")
     return err
@@ -60,7 +60,7 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_a_second_run_has_nothing_to_run_unless_its_store_was_damaged(here, capfd):
+def test_stored_cells_are_not_run_again_and_a_damaged_store_is_renamed(here, capfd):
     one_stored(here)
     assert call("run", *ONE_CELL) == FINE
     assert "0 of 1 cells run" in capfd.readouterr().out
@@ -79,7 +79,7 @@ def test_a_second_run_has_nothing_to_run_unless_its_store_was_damaged(here, capf
 
 
 @pytest.mark.parametrize("words", [("show", "free_four_bar"), ("report",), ("report", "--publish")])
-def test_reading_commands_make_no_store(words, here, capfd):
+def test_commands_that_only_read_create_no_store(words, here, capfd):
     assert call(*words) == REFUSED
     assert "crosscheck run" in one_line(capfd.readouterr().err)
     assert call(*words, "--results", "my results") == REFUSED
@@ -88,13 +88,13 @@ def test_reading_commands_make_no_store(words, here, capfd):
 
 
 def one_stored(folder):
-    """A store with the row of ONE_CELL, as after its run."""
+    """Write a store with the row of ONE_CELL."""
     with Store(folder / "crosscheck-results" / "cells.sqlite") as store:
         store.put(blank(Cell(FreeFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
 
 
 def checkout(folder, monkeypatch):
-    """A folder that looks like a checkout, with its files' texts."""
+    """Write the files that identify a checkout, and use it; return path -> text."""
     texts = {"README.md": "a readme", "reports/results/index.md": "an index"}
     for name, text in texts.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -115,8 +115,8 @@ def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
     assert {path.name for path in (here / "crosscheck-results").iterdir()} == {"cells.sqlite"}
 
 
-def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, monkeypatch, capfd):
-    """Its cells do not count as missing, since they can't be run: their rows would be removed without notice."""
+def test_nothing_is_published_if_an_engine_of_published_rows_is_not_installed(here, monkeypatch, capfd):
+    """Cells of an engine that is not installed do not count as missing, so their rows would disappear."""
     texts = checkout(here / "checkout", monkeypatch)
     texts["reports/results/errors.csv"] = as_csv(
         [row(engine=name) for name in ("bullet", "pymunk", "mjx")], timings=False
@@ -132,8 +132,8 @@ def test_nothing_is_published_without_an_engine_whose_rows_are_published(here, m
     assert {name: (here / "checkout" / name).read_text() for name in texts} == texts
 
 
-def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkeypatch):
-    """The grid has one cell and one page of one line, since rendering is not tested here."""
+def test_only_publish_writes_into_the_checkout(here, monkeypatch):
+    """The grid has one cell and one page with one line, since rendering is not tested here."""
     checkout(here / "checkout", monkeypatch)
     cell = Cell(Disc(), Toy(), 1)
     monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
@@ -155,7 +155,7 @@ def test_a_whole_grid_is_published_in_the_checkout_and_nowhere_else(here, monkey
     assert not (here / "crosscheck-results/index.md").exists()
 
 
-def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
+def test_all_files_are_replaced_or_none(tmp_path, monkeypatch):
     old = {tmp_path / name: "old" for name in ("a.md", "b.md", "c.md")}
     new = dict.fromkeys(old, "new\n")
     for path, text in old.items():
@@ -183,7 +183,7 @@ def test_files_are_replaced_whole_or_not_at_all(tmp_path, monkeypatch):
 
 
 def test_output_into_a_pipe_does_not_replace_the_pipe(tmp_path, capfd):
-    """Otherwise a run as root would replace /dev/null by a file."""
+    """As root the program could otherwise replace /dev/null by a file."""
     pipe = tmp_path / "a.gif"
     os.mkfifo(pipe)
     reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
@@ -215,7 +215,7 @@ def test_each_exception_has_its_exit_status_and_its_message(error, status, line,
     assert capfd.readouterr() == ("", line)
 
 
-def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
+def test_without_a_command_the_help_is_printed_on_stdout(capfd):
     assert call() == FINE
     out, err = capfd.readouterr()
     assert err == ""
@@ -231,8 +231,7 @@ def test_without_a_command_there_is_help_and_nothing_on_stderr(capfd):
         (("check", "model.xml", "--step", "1", "--step", "2"), "--step"),
     ],
 )
-def test_an_option_of_one_value_is_not_taken_twice(words, option, capfd):
-    """Otherwise only the last value would be used, without notice."""
+def test_a_repeated_option_that_takes_one_value_is_refused(words, option, capfd):
     assert call(*words) == REFUSED
     assert f"{option} is given 2 times" in one_line(capfd.readouterr().err)
 
@@ -241,9 +240,9 @@ def ended(words, **streams):
     return subprocess.run([sys.executable, "-m", "reports", *words], env=environment(), text=True, **streams)
 
 
-def test_a_full_disk_behind_a_pipe_s_place_is_one_line_and_a_closed_one_none():
+def test_a_full_output_device_is_reported_in_one_line_on_stderr():
     if not Path("/dev/full").is_char_device():
-        pytest.skip("/dev/full is there on Linux alone")
+        pytest.skip("only Linux has /dev/full")
     with open("/dev/full", "w", encoding="utf-8") as full:
         process = ended(["--help"], stdout=full, stderr=subprocess.PIPE)
         assert process.returncode == REFUSED
@@ -252,7 +251,7 @@ def test_a_full_disk_behind_a_pipe_s_place_is_one_line_and_a_closed_one_none():
         assert (process.returncode, process.stdout) == (REFUSED, "")
 
 
-def test_a_reader_that_goes_away_ends_the_program_without_a_word():
+def test_a_closed_pipe_ends_the_program_without_a_message():
     reading, writing = os.pipe()
     os.close(reading)
     try:
@@ -262,8 +261,8 @@ def test_a_reader_that_goes_away_ends_the_program_without_a_word():
     assert (process.returncode, process.stderr) == (UNREAD, "")
 
 
-def test_closed_streams_are_no_reason_to_fail(tmp_path):
-    """No file may get the number of a closed stream, since output would be written into it."""
+def test_the_program_runs_with_closed_standard_streams(tmp_path):
+    """A file that got the number of a closed stream would be overwritten by output."""
     text = [sys.executable, "-m", "reports", "run", *ONE_CELL, "--results", str(tmp_path)]
     process = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *text], env=environment())
     assert process.returncode == FINE
@@ -271,14 +270,14 @@ def test_closed_streams_are_no_reason_to_fail(tmp_path):
         assert connection.execute("select count(*) from results").fetchone() == (1,)
 
 
-def test_a_run_in_which_every_cell_failed_has_another_status_than_0(here, capfd):
+def test_a_run_in_which_every_cell_failed_has_exit_status_1(here, capfd):
     (here / "mine.py").write_text("from tests.toys import FailingToy, Toy\nBAD, GOOD = FailingToy('raise'), Toy()\n")
     (here / "disc.py").write_text("from tests.toys import Disc\nDISC = Disc()\n")
     assert call("run", "disc.py", "--engine", "mine.py:BAD", "--every", "1") == 1
     assert "none of 1 cells gave a motion" in one_line(capfd.readouterr().err)
 
 
-def test_a_current_folder_that_was_removed_is_one_line(here, capfd):
+def test_a_removed_current_folder_is_reported_in_one_line(here, capfd):
     (here / "gone").mkdir()
     os.chdir(here / "gone")
     (here / "gone").rmdir()

@@ -1,4 +1,4 @@
-"""Cache keys: a result is stale when a source file or an installed version changes that it depends on."""
+"""Cache keys: a result is stale if a source file or an installed version on which it depends has changed."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Theirs(Toy):
 
 @pytest.fixture
 def theirs(tmp_path, monkeypatch):
-    """An engine in a user's file, with a module and a data file beside it, and a file that the engine does not name."""
+    """A user's engine with a module and a data file in the same folder, and with another file that it does not use."""
     files = {"their_engine.py": ENGINE, "helping.py": "number = 1\n", "numbers.txt": "7\n", "notes.txt": "x\n"}
     for name, text in files.items():
         (tmp_path / name).write_text(text)
@@ -86,7 +86,7 @@ def theirs(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(("name", "counts"), [("helping.py", True), ("numbers.txt", True), ("notes.txt", False)])
-def test_a_changed_file_of_somebody_s_engine_makes_its_rows_stale(theirs, tmp_path, name, counts):
+def test_a_changed_file_of_a_user_s_engine_makes_its_rows_stale(theirs, tmp_path, name, counts):
     @dataclass(frozen=True)
     class EngineInTuple:
         parts: tuple[Any, ...]
@@ -150,7 +150,7 @@ def test_every_number_of_a_cell_is_in_its_key():
 
 
 def test_a_release_of_another_name_is_in_the_key_of_rows(monkeypatch):
-    """MuJoCo 3.6 is the distribution mujoco, 4.0 is mujoco-core, and both hold the package mujoco."""
+    """The package mujoco is in the distribution mujoco for version 3.6, and in mujoco-core for version 4.0."""
     expected = dict(fingerprint._distributions())
     assert "pytest" not in versions_of(Disc(), DEFAULT)
     monkeypatch.setattr(fingerprint, "_distributions", lambda: {**expected, "pymunk": ["pymunk", "pytest"]})

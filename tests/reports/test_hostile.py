@@ -1,5 +1,7 @@
-"""Scenes and engines that exit, hang or lie, wrong command lines, and numbers that are valid each and have no finite
-motion together: an outcome or one line, never a traceback."""
+"""Scenes and engines that exit, hang or return wrong data, wrong command lines, and numbers without a finite motion.
+
+Each gives an outcome or a line, and no traceback.
+"""
 
 from __future__ import annotations
 
@@ -100,7 +102,7 @@ def test_a_step_cost_that_is_none_names_the_engine_and_the_scene(deed):
 
 
 def forks(file):
-    """In the child too it returns its file, as an engine does that forks and forgets; the child's is a lock on it."""
+    """Fork and return the file in both processes, as a careless engine does; the child holds a lock on the file."""
     import fcntl
 
     stored = os.open(file, os.O_CREAT | os.O_WRONLY)
@@ -233,7 +235,7 @@ BY_NAME = {scene.name: scene for scene in SCENES}
 EXTREMES = ("1e200", "1e-200", "-1", "nan")
 
 
-# A hundred links have the fields of ten, and take a quarter of a minute.
+# A chain of a hundred links has the same fields as one of ten, and takes 15 s.
 @pytest.mark.parametrize("scene", [scene for scene in SCENES if scene.name != "pendulum_100"], ids=lambda s: s.name)
 def test_every_number_of_every_scene_gives_a_finite_start_or_a_refusal(scene: Scene):
     for field in fields(scene):  # type: ignore[arg-type]
@@ -277,7 +279,7 @@ def test_a_motion_that_can_not_be_computed_is_held_against_no_engine(name, numbe
 
 @dataclass(frozen=True)
 class Wrong(Disc):
-    """Somebody's scene whose truth goes wrong in one of several ways."""
+    """A user's scene whose exact motion has one of several defects."""
 
     name: ClassVar[str] = "wrong"
     how: str = ""

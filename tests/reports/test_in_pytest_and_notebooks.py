@@ -1,4 +1,4 @@
-"""The module planar_crosscheck, importers and fixtures, as notebooks, scripts and users' tests use them."""
+"""The functions of planar_crosscheck, the importers and the fixtures in notebooks, scripts and users' tests."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
         ends = np.array([x, y]) + np.outer([-length / 2, length / 2], [math.cos(angle), math.sin(angle)])
         np.testing.assert_allclose(ends, [POINTS[first], POINTS[second]], atol=1e-15)
     assert result.degrees_of_freedom() == (1, 1)
-    # A third bar at a point, and one that hangs freely.
+    # One point connects three bars, and one bar hangs freely.
     extra = linkage({**POINTS, "E": (1.5, 0.6)}, {**BARS, "arm": "CE"}, "AD")
     assert [joint.name for joint in extra.joints] == ["A", "B", "D", "C", "C 2"]
     assert extra.degrees_of_freedom() == (2, 2)
@@ -75,7 +75,7 @@ def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
         ({**POINTS, "E": (0, 0)}, {"crank": "AE"}, "A", "at the same point"),
     ],
 )
-def test_what_is_no_linkage_is_refused_in_a_sentence(points, bars, ground, sentence):
+def test_an_invalid_linkage_is_refused_in_a_sentence(points, bars, ground, sentence):
     with pytest.raises(InvalidMechanism, match=re.escape(sentence)):
         linkage(points, bars, ground)
 
@@ -93,7 +93,7 @@ def test_a_comparison_is_the_engines_run_beside_the_scenes_own_truth(monkeypatch
         planar_crosscheck.compare(scene.mechanism(), "pymunky", 1e-3)
     with pytest.raises(ValueError, match="dt is 3 s and duration"):
         planar_crosscheck.compare(scene.mechanism(), DEFAULT, 3, 1.0)
-    # pandas is not needed, and where it is there it is given columns of equal length.
+    # pandas is optional; a substitute checks that it gets columns of equal length.
     pandas = SimpleNamespace(DataFrame=lambda data, index: (data, index), Index=lambda values, name: tuple(values))
     monkeypatch.setitem(sys.modules, "pandas", pandas)
     columns, index = result.frame()
@@ -176,7 +176,7 @@ def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_i
         ({"reactions_have_sign_and_size": "bug 12", "has_a_nose": "bug 14"}, "'has_a_nose' is no check; there are"),
     ],
 )
-def test_failures_that_are_expected_have_to_come_true(monkeypatch, expected, sentence):
+def test_an_expected_failure_that_does_not_occur_fails(monkeypatch, expected, sentence):
     from tests.wrong.adapters import Wrong
 
     monkeypatch.setattr(engines.conformance, "CHECKS", tuple(check for check in CHECKS if check.name in FEW))

@@ -1,4 +1,4 @@
-"""Errors of a motion with a known offset in every number, and each field of its row, against values by hand."""
+"""Errors of motions with known offsets, and all fields of a row, compared with values that are computed by hand."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TIMES = np.array([0.0, 0.1, 0.2, 0.3])
 
 @dataclass(frozen=True)
 class Pair(Scene):
-    """A driven disc and a free one, whose kinetic energy changes: rows x, y of a pin and a torque."""
+    """A driven disc, and a free disc whose kinetic energy changes; the rows are x and y of a pin, and a torque."""
 
     name: ClassVar[str] = "pair"
     source: ClassVar[str] = "invented"
@@ -48,7 +48,7 @@ class Pair(Scene):
         return Mechanism((first, second), joints, (0.0, -10.0))
 
     def _motion(self, times: NDArray[np.float64]) -> Trajectory:
-        """The second disc moves along x at 6 t: impossible for this mechanism, but no error depends on that."""
+        """The second disc moves along x at 6 t, which is impossible here, but no error depends on this."""
         t = times
         pose, twist = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))
         pose[:, 0, 2], twist[:, 0, 2] = 5 * t, 5.0
@@ -64,7 +64,7 @@ KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # J, the truth's largest: at 0.3 s,
 
 
 def moved(**offsets: list[tuple[tuple[int, ...], float]]) -> Trajectory:
-    """The truth with `field=[(index, offset), ...]` added to single numbers."""
+    """The exact motion with offsets: `field=[(index, offset), ...]`."""
     fields = {name: getattr(TRUTH, name).copy() for name in ("pose", "twist", "reaction")}
     for name, changes in offsets.items():
         for index, offset in changes:
@@ -104,7 +104,7 @@ MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
     ),
     "a rate": ({"twist": [((2, 1, 2), 0.25)]}, {"rate": 0.25, "energy": 0.5 * 11 * 0.25**2 / KINETIC}),
     "energy of rotation": ({"twist": [((0, 0, 2), 1.0)]}, {"rate": 1.0, "energy": 0.5 * 3 * (36 - 25) / KINETIC}),
-    # A reaction is divided by the largest of its kind, 20 N or 8 N m; the larger of the two quotients counts.
+    # The error of a reaction is relative to the largest one of its kind, 20 N or 8 N m; the larger ratio counts.
     "a force": ({"reaction": [((1, 0), -3.0)]}, {"reaction": 3 / 20}),
     "another force": ({"reaction": [((1, 1), -3.0)]}, {"reaction": 3 / 20}),
     "a torque": ({"reaction": [((1, 2), -3.0)]}, {"reaction": 3 / 8}),
@@ -174,7 +174,7 @@ INSTANTS = np.linspace(0, 0.2, 21)
 
 @dataclass(frozen=True, eq=False)  # its arrays can't be compared or hashed
 class Given(Plain):
-    """An engine that returns a given motion, with given facts of its model."""
+    """An engine that returns a given motion and given sizes of its model."""
 
     trajectory: Trajectory
     variant: str = "given"
@@ -195,19 +195,19 @@ class GivenRun:
 
 
 def disc(**changes) -> Trajectory:
-    """The disc's true motion with other fields."""
+    """The exact motion of the disc with some fields replaced."""
     return replace(DISC.motion(INSTANTS), **changes)
 
 
 def shifted(column: int, offset, start: int = 0) -> Trajectory:
-    """The disc's pose off by `offset` in one coordinate from one sample on."""
+    """The exact poses of the disc plus `offset` in one coordinate from one sample on."""
     trajectory = disc()
     trajectory.pose[start:, 0, column] += offset
     return trajectory
 
 
 def test_every_field_of_a_measured_row_is_its_own():
-    """`measure` of a motion with a different error in every quantity; each field is computed by hand."""
+    """Every quantity of the motion has a different error, and each field is computed by hand."""
     t = np.linspace(0, SCENE.duration, SCENE.samples + 1)
     truth = SCENE.motion(t)
     pose, twist, reaction = truth.pose.copy(), truth.twist.copy(), truth.reaction.copy()

@@ -1,4 +1,4 @@
-"""Outcomes of runs: the bound of every outcome and its sentence."""
+"""The outcomes of runs: their bounds and their sentences."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_a_drive_that_falls_behind_is_torn():
 
 
 def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) -> str:
-    """The outcome of a row with these fields, by the first rule that applies."""
+    """The outcome of a row with these fields."""
     quiet = {"gap": 0.0, "drive_gap": 0.0, "flips": 0, "angle": 0.0, "angle_duration": 0.0}
     values = row(**{**quiet, **fields_of_a_row})
     count = len(trajectory.t) if count is None else count
@@ -145,7 +145,7 @@ def test_samples_after_the_first_one_that_is_not_finite_are_not_compared():
 def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_theme():
     assert len({outcome.meaning for outcome in Outcome}) == len(Outcome)
     assert [outcome for outcome in Outcome if outcome.comparable] == ["finished", "converged", "plateau"]
-    # The two outcomes with the same letter on a map show a number there instead.
+    # On a map the two outcomes with the same letter show a number instead.
     letters = [outcome.letter for outcome in Outcome if outcome is not Outcome.CONVERGED]
     assert len(set(letters)) == len(letters)
     assert {outcome.colour for outcome in Outcome} <= {field.name for field in fields(Theme)}
@@ -155,7 +155,7 @@ def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_the
 
 
 def test_texts_take_thresholds_from_the_code():
-    """A text with a number of its own can contradict the code: once a thousandth was printed for a twentieth."""
+    """A number that is typed in a text could contradict the threshold in the code."""
     assert f"more than {TORN:g} of" in Outcome.TORN.meaning
     assert f"more than {SATURATED:g} rad" in Outcome.SATURATED.meaning
     folder = Path(reports.__file__).parent

@@ -1,4 +1,4 @@
-"""The pool: every way to fail is a row, nothing is lost when workers are killed, and a run can be resumed."""
+"""The pool: every failure of a cell is a row, no row is lost when workers are killed, and a run can be continued."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tests.wrong.adapters import Wrong
 
 pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 
-# The outcome of each way to end a job, and a part of its sentence.
+# Action of a job -> (outcome, part of its sentence).
 ENDS = {
     RoughToy("segfault"): ("aborted", "aborted with signal 11 (SIGSEGV)"),
     RoughToy("closes files"): ("aborted", "exit status 1"),
@@ -60,7 +60,7 @@ def test_each_way_to_fail_is_an_outcome_of_its_own_and_sound_cells_keep_their_nu
         assert sentence in rows[repr(toy)].sentence
     for toy, index in sound.items():
         assert rows[repr(toy)].angle == pytest.approx(float(index) * cells[0].step ** 2, rel=1e-9)
-    # Run separately, since a busy machine needs more wall time for the others.
+    # Run separately, since the other actions need more wall time on a busy machine.
     (row,) = run_cells([Cell(Disc(), RoughToy("native sleep"), 1)], wall=1.0)
     assert (row.outcome, row.sentence) == ("timed out", "did not end within 1 s, and used less than 60 s of CPU time")
 
@@ -135,7 +135,7 @@ def test_exit_codes_are_distinguished():
 
 
 class Killer:
-    """Kills workers and the fork server, at moments and with signals that follow from a seed."""
+    """Kills workers and the fork server; a seed determines the times and the signals."""
 
     def __init__(self, kills: int, monkeypatch: pytest.MonkeyPatch) -> None:
         self.kills = 0
@@ -145,7 +145,7 @@ class Killer:
         monkeypatch.setattr(supervisor, "Pool", lambda *terms: self._pools.append(create(*terms)) or self._pools[-1])
 
     def arm(self) -> None:
-        """One kill, after a tenth of a second at most."""
+        """Schedule one kill within 0.1 s."""
         if len(self._timers) < self._planned:
             way = self._random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV, None])
             timer = threading.Timer(self._random.uniform(0.0, 0.1), self._kill, (way, self._random.random()))
@@ -244,7 +244,7 @@ def test_after_a_kill_the_next_run_continues_where_it_stopped(tmp_path):
         for _ in range(4):
             assert process.stdout.readline().strip()
     process.kill()
-    # A hanging worker must not delay the end: its wall limit alone is eleven minutes.
+    # A hanging worker must not delay the end; its wall-time limit is eleven minutes.
     assert process.wait(timeout=60) != 0
     with Store(tmp_path / "cells.sqlite") as store:
         assert missing([Cell(Disc(), Toy(), every) for every in (1, 2, 3, 4)], store) == ()
@@ -285,7 +285,7 @@ def test_a_cell_whose_worker_is_killed_twice_from_outside_is_reported_and_not_st
 
 
 class Aborting(Wrong):
-    """Native code aborts like this for a step that it can't divide by."""
+    """An engine that aborts its process, as native code does after a failed assertion."""
 
     def build(self, mechanism, dt):
         if dt == 0:

@@ -1,4 +1,4 @@
-"""Files of the user's current folder: none is imported in the place of a module, and no row comes of an import."""
+"""No file in the user's current folder is imported instead of a module, and a failed import gives no stored row."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from tests.toys import Disc, Toy
 
 HIDDEN = ("reference", "engines", "reports", "csv", "numpy", "typing", "mujoco", "pymunk", "threading", "pickle")
 RUN = ("run", "free_four_bar", "--engine", "pymunk", "--every", "10")
-# As where there is no fork server, and a worker imports all that it needs from nothing: on macOS and Windows.
+# Without a fork server, as on macOS and Windows, each worker imports all modules itself.
 SPAWN = "import multiprocessing; multiprocessing.get_all_start_methods = lambda: ['spawn']\n"
 PROGRAM = "import sys; from planar_crosscheck import main; {more}\nif __name__ == '__main__': main()"
 
 
 @pytest.fixture
 def hostile(tmp_path):
-    """A folder in which whatever is imported says so in the file `executed`, and fails."""
+    """A folder of modules that write their name into the file `executed` and fail when they are imported."""
     for name in HIDDEN:
         path = tmp_path / name / "__init__.py" if name in ("engines", "reports") else tmp_path / f"{name}.py"
         path.parent.mkdir(exist_ok=True)
@@ -37,7 +37,7 @@ def hostile(tmp_path):
 
 
 def ended(folder, *words):
-    """A process that Python runs in this folder."""
+    """Run Python in this folder and return the ended process."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     return subprocess.run([sys.executable, *words], cwd=folder, env=environment, capture_output=True, text=True)
 
@@ -56,7 +56,7 @@ def test_as_a_module_the_program_leaves_the_current_folder_off_its_path(tmp_path
 
 
 def test_a_worker_whose_path_has_another_package_of_our_name_says_so(tmp_path):
-    """The parent imported ours before the path changed; a worker that starts from nothing would import the other."""
+    """The path changes after the parent has imported our package, so that a new worker would import the other one."""
     (tmp_path / "engines").mkdir()
     (tmp_path / "engines" / "__init__.py").write_text("")
     more = f"import reports.cli.commands, engines.registry; sys.path.insert(0, {str(tmp_path)!r})"
@@ -68,7 +68,7 @@ def test_a_worker_whose_path_has_another_package_of_our_name_says_so(tmp_path):
 
 @dataclass(frozen=True)
 class Importing(Toy):
-    """Its module is not there."""
+    """An engine whose module does not exist."""
 
     def build(self, mechanism: Mechanism, dt: float):
         from nowhere import nothing  # pyright: ignore[reportMissingImports]

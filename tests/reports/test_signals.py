@@ -1,4 +1,4 @@
-"""After a signal or Ctrl-C no temporary folder, process or traceback remains, and finished rows are stored."""
+"""After a signal no temporary folder or process remains, no traceback is printed, and finished rows are stored."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ with ending_at_once(), temporary_folder(Path(sys.argv[1])) as folder:
 
 
 def listening():
-    """Restore the default, whatever the parent of the tests set."""
+    """Restore the default handler, since the parent of the tests may have changed it."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
@@ -68,7 +68,7 @@ def test_a_signal_leaves_no_folder_and_is_the_status(tmp_path):
     assert [*tmp_path.iterdir()] == []
 
 
-# Sends Ctrl-C to itself when the given number of modules has been imported after the program's first line.
+# A program that sends itself SIGINT after it has imported the given number of modules.
 INTERRUPTS_ITSELF = """
 import runpy, signal, sys
 
@@ -101,7 +101,7 @@ def test_ctrl_c_at_an_import_is_status_130_without_a_word(moment):
 
 
 def test_ctrl_c_in_a_run_says_what_is_stored(tmp_path):
-    """The signal goes to the whole process group, as from a terminal: workers must not print anything either."""
+    """As on a terminal, the whole process group gets the signal, and workers must not print a traceback."""
     text = ["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--results", str(tmp_path)]
     process = subprocess.Popen(
         [sys.executable, "-m", "reports", *text, "--every", "1", "--every", "2", "--every", "30000"],

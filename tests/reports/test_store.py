@@ -1,4 +1,4 @@
-"""The store: its rows survive; a damaged, locked or foreign file gives one sentence or is moved aside."""
+"""The store: rows are read unchanged; a damaged, locked or foreign file is refused in one sentence or renamed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ CELLS = [Cell(Disc(), Toy(), every) for every in range(1, 41)]
 
 
 def row(cell: Cell):
-    """Rows as they are after a run, each with numbers of its own, long enough that the file has many pages."""
+    """A row like that of a run; each has different numbers, and is so long that the file has many pages."""
     return replace(blank(cell, Outcome.FINISHED, "a sentence " * 40), angle=1e-3 * cell.every, flips=cell.every)
 
 
@@ -66,7 +66,7 @@ def test_stored_rows_are_returned_unchanged_and_the_last_row_of_a_cell_is_used(t
         assert store.load_references() == ("second", "first", "third")
 
 
-def test_reading_leaves_no_trace_and_sees_what_a_run_that_continues_has_stored(tmp_path):
+def test_reading_writes_no_file_and_includes_the_rows_of_a_run_in_progress(tmp_path):
     path = tmp_path / "cells.sqlite"
     with Store(path) as running:
         running.put(row(CELLS[0]))
@@ -86,7 +86,7 @@ def rewritten(path, text):
 
 
 def altered(**changes):
-    """The text of a row whose values are changed (None takes one away)."""
+    """The text of a row with changed values; None removes a value."""
     values = {**row(CELLS[0]).as_dict(), **changes}
     return json.dumps({name: value for name, value in values.items() if value is not None})
 

@@ -1,4 +1,4 @@
-"""Tasks give pages further results: the pool runs and stores them, and a report reads them without running anything."""
+"""Tasks: the pool runs and stores them, and a report reads their answers without running an engine."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from tests.toys import Disc, FailingToy, Toy, in_process
 
 @dataclass(frozen=True)
 class Sum(Task):
-    """One that runs no engine."""
+    """A task that runs no engine."""
 
     numbers: tuple[float, ...]
     cost: float = 0.01  # type: ignore[misc]  # a property in the base
@@ -100,7 +100,7 @@ def test_the_end_of_a_task_is_its_answer_and_is_stored_too(tmp_path):
         assert sentence in answer.told
 
 
-def test_a_quick_run_leaves_out_dear_tasks_and_an_engine_alone_runs_its_own():
+def test_a_quick_run_leaves_out_long_tasks_and_a_named_engine_runs_only_its_tasks():
     cheap, dear = Sum((1.0,)), Sum((2.0,), 10 * QUICK_CELL)
     mine, other = motion(), motion("refuse")
     failure = Failure("Kept", "It should turn.", tasks=(dear, mine))

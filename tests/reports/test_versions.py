@@ -1,4 +1,4 @@
-"""Releases and builds of an engine: installed apart, run in a process of their own, and compared; the page of them."""
+"""Versions and builds of an engine: their installation, their runs in separate processes, their comparison and page."""
 
 from __future__ import annotations
 
@@ -150,9 +150,9 @@ def test_the_verdict_on_a_method_follows_its_outcome_before_its_error(capsys, be
 def test_random_trees_tell_ideal_constraints_from_wrong_ones():
     three_trees = trees(6, 2, 3)
     assert len({tree.pose.tobytes() for tree in three_trees}) == 3
-    # Two formulations of the same law differ by the error of a step of 1e-5 of the time scale.
+    # Two formulations of the ideal joints differ only by the error of a step of 1e-5 of the time scale.
     assert max(miss(Lagrange("rk4"), tree) for tree in three_trees) < 1e-3
-    # As shipped, the acceleration of a constraint is wrong by about a tenth of the ideal one.
+    # With default settings the error of a constraint's acceleration is about a tenth of the ideal acceleration.
     assert min(miss(DEFAULT, tree) for tree in three_trees) > 1e-2
 
 
@@ -174,7 +174,7 @@ def test_the_page_counts_changes_and_names_the_documented_ones(monkeypatch):
 
 
 def toy(folder: Path, version: str, source: str) -> Path:
-    """A folder as pip makes it, with a version of an engine whose error is `error()` times the step squared."""
+    """Write a folder like one of pip with a version of an engine whose error is `error()` times the step squared."""
     index = folder / version
     (index / "toyengine").mkdir(parents=True)
     (index / "toyengine" / "__init__.py").write_text(source)
@@ -186,7 +186,7 @@ def toy(folder: Path, version: str, source: str) -> Path:
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """A folder with an adapter and a scene, from which commands are given."""
+    """The current folder of the commands, with an adapter and a scene."""
     (tmp_path / "adapter.py").write_text(ADAPTER)
     (tmp_path / "scene.py").write_text("from tests.toys import Disc\nDISC = Disc()\n")
     monkeypatch.chdir(tmp_path)
@@ -201,7 +201,7 @@ def here(tmp_path, monkeypatch):
 
 @pytest.fixture
 def once(monkeypatch):
-    """Each build is run once in a test, however often it is compared."""
+    """Cache the rows of each build, since a test compares it several times."""
     run, expected = builds.column, {}
 
     def column(label, request, *others):
@@ -257,7 +257,7 @@ def test_a_build_has_the_version_of_its_metadata_and_not_of_its_module(tmp_path)
 
 
 class Pip:
-    """What pip would do, without network: it prints the text listed for a requirement, or makes the folder."""
+    """A substitute for pip without network: prints the text for a requirement, or writes the folder."""
 
     def __init__(self, answers):
         self.answers, self.calls = answers, []
@@ -329,7 +329,7 @@ def test_invalid_arguments_are_refused_in_one_line(words, reason, here, monkeypa
 
 
 def wheel(folder: Path, version: str, error: float) -> Path:
-    """A wheel of the toy engine, as a build of it makes one."""
+    """Write a wheel of the toy engine."""
     built = toy(folder / "built", version, f"def error(): return {error}\n")
     info = built / f"toyengine-{version}.dist-info"
     (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: by hand\nRoot-Is-Purelib: true\nTag: py3-none-any\n")

@@ -1,4 +1,4 @@
-"""The lines of the page `your_loop` give the errors of the page if they are pasted into models as shipped."""
+"""The lines to copy on the page `your_loop` reduce the errors of models with default settings to those on the page."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -31,7 +31,7 @@ def lines(name: str) -> str:
 
 
 def error_of(scene: Scene, poses: Callable[[], list[tuple[float, float, float]]], advance: Callable[[], None]) -> float:
-    """The largest angle error [rad] of a model that `advance` moves from sample to sample."""
+    """The largest angle error [rad] of a model over all samples; `advance` moves it to the next sample."""
     truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
     worst = 0.0
     for exact in truth[1:]:
@@ -85,14 +85,14 @@ CASES = {case.scene.name: (case, other) for case, other in zip(page.MUJOCO_CASES
 
 
 @pytest.mark.parametrize("scene", [page.LOOP, page.SLIDER, page.CHAIN], ids=lambda scene: scene.name)
-def test_the_lines_for_a_compiled_model_of_mujoco_give_the_error_of_the_page(scene):
+def test_the_lines_for_a_compiled_mujoco_model_give_the_published_error(scene):
     case, _ = CASES[scene.name]
     shipped = MJCF.write(scene.mechanism(), STEP, "default")
-    # The solver's tolerance and the rounding of numbers in the file are far below the error of RK4.
+    # rel=0.02: the solver's tolerance and the rounding of numbers in the file are far below the error of RK4.
     assert in_mujoco(scene, shipped, lines("compiled")) == pytest.approx(row(case, case.after), rel=0.02)
 
 
-def test_the_xml_lines_give_the_same_error_on_joints_without_own_settings():
+def test_the_xml_lines_give_the_published_error_for_joints_without_settings():
     case, _ = CASES[page.LOOP.name]
     shipped = re.sub(r' sol(ref|imp)="[^"]*"', "", MJCF.write(page.LOOP.mechanism(), STEP, "default"))
     assert in_mujoco(page.LOOP, shipped) > 0.005
@@ -100,7 +100,7 @@ def test_the_xml_lines_give_the_same_error_on_joints_without_own_settings():
     assert in_mujoco(page.LOOP, pasted) == pytest.approx(row(case, case.after), rel=0.02)
 
 
-def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
+def test_the_contact_pair_of_a_rolling_disc_gives_the_published_error():
     case, _ = CASES[page.DISC.name]
     shipped = MJCF.write(page.DISC.mechanism(), STEP, "default")
     ground, wheel = re.findall(r'<geom name="(contact: \w+)"', shipped)[::-1]
@@ -110,10 +110,10 @@ def test_the_pair_of_a_rolling_disc_gives_the_error_of_the_page():
 
 
 @pytest.mark.parametrize("scene", [page.LOOP, page.SLIDER, page.CHAIN], ids=lambda scene: scene.name)
-def test_the_lines_for_pymunk_give_the_error_of_the_page(scene):
+def test_the_lines_for_pymunk_give_the_published_error(scene):
     _, case = CASES[scene.name]
     shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, page.PYMUNK_LINES)
-    # The row's iterations follow from the convergence factor, those of `choose` from trials: residuals differ.
+    # rel=0.2: the number of iterations follows from a convergence factor in the row, and from trials in `choose`.
     assert closed == pytest.approx(row(case, case.after), rel=0.2)
     assert closed < shipped / 8
 
@@ -132,19 +132,19 @@ def worst_gap(space: pymunk.Space, gaps: Callable, step: float, seconds: float =
 
 
 @pytest.mark.parametrize("linkage", LINKAGES)
-@pytest.mark.parametrize("step", [1 / 60, pytest.param(1 / 240, marks=pytest.mark.slow)])  # the page's table has 1 ms
-def test_with_the_lines_no_linkage_opens_more_than_as_shipped(linkage, step):
+@pytest.mark.parametrize("step", [1 / 60, pytest.param(1 / 240, marks=pytest.mark.slow)])  # 1 ms is in the page's table
+def test_the_lines_for_pymunk_increase_the_gaps_of_no_linkage(linkage, step):
     make = LINKAGES[linkage]
     space = make()
     names = run_lines(space, page.PYMUNK_LINES.replace("1e-3", repr(step)))
     if names["choose"](make(), step) is None:
         assert state(space) == state(make())
     else:
-        # This motion is longer than the trials of `choose`, so gaps may be more than a quarter of those as shipped.
+        # `choose` requires gaps of a quarter, but only during its trials, which are shorter than this motion.
         assert worst_gap(space, names["gaps"], step) < worst_gap(make(), names["gaps"], step)
 
 
-def test_eight_iterations_tear_a_walking_linkage_and_the_lines_avoid_them():
+def test_the_lines_choose_more_than_eight_iterations_which_tear_a_walking_linkage():
     step, jansen = 1e-3, LINKAGES["two legs of Jansen on a crank"]
     torn = jansen()
     names = run_lines(jansen(), page.PYMUNK_LINES.replace("print(choose(space, 1e-3))", ""))
@@ -156,7 +156,7 @@ def test_eight_iterations_tear_a_walking_linkage_and_the_lines_avoid_them():
     assert worst_gap(chosen, names["gaps"], step, 1.0) < shipped / 4
 
 
-def test_a_linkage_that_starts_open_or_cannot_be_copied_is_not_changed():
+def test_the_lines_do_not_change_a_linkage_that_starts_open_or_cannot_be_copied():
     class Picture:
         def __deepcopy__(self, memo):
             raise TypeError("a picture of the screen")
@@ -171,7 +171,7 @@ def test_a_linkage_that_starts_open_or_cannot_be_copied_is_not_changed():
     assert (state(opened), state(pictured)) == earlier
 
 
-def test_limits_and_bodies_with_another_centre_of_gravity_are_not_changed():
+def test_the_lines_do_not_change_limits_or_the_pose_of_a_body_with_an_offset_centre_of_gravity():
     space = LINKAGES["ragdoll that hangs by a hand"]()
     limits = [joint.error_bias for joint in space.constraints if isinstance(joint, RotaryLimitJoint)]
     run_lines(space, page.PYMUNK_LINES)
@@ -185,14 +185,14 @@ def test_limits_and_bodies_with_another_centre_of_gravity_are_not_changed():
     assert (*body.position, body.angle) == pytest.approx((5, 2, 0.7), abs=1e-14)
 
 
-def test_a_random_mechanism_depends_only_on_its_number():
+def test_a_random_mechanism_depends_only_on_its_seed():
     first, again, other = draw(page.LOOP, 0), draw(page.LOOP, 0), draw(page.LOOP, 1)
     assert first == again != other
     earlier, later = page.PYMUNK_CASES[0].engines
     assert Fresh(later, page.LOOP).error(0) < Fresh(earlier, page.LOOP).error(0)
 
 
-def test_before_and_after_compares_gaps_and_angles_of_a_linkage_without_contact():
+def test_the_lines_reduce_gaps_and_angle_errors_of_a_four_bar_tenfold():
     values = next(task for task in page.BUILT if task.linkage == "four-bar").run()
     gap, angle = np.asarray(values["gap"]), np.asarray(values["angle"])
     assert gap[1] < gap[0] / 10
