@@ -2,8 +2,8 @@
 
 A check fails if its error exceeds both a floor and NOISE_MARGIN times the noise of the case. The noise is the largest
 difference between the case and copies of it that are slightly shifted, turned and rounded differently, and between the
-engine and the same engine with a smaller solver tolerance (`Engine.stricter`). It therefore contains the conditioning
-of the case: nearly dependent rows, large mass ratios, weights of combined runs, projection of rounded gaps.
+engine and the same engine with a smaller solver tolerance (`Engine.stricter`). Nearly dependent rows, large mass ratios
+and combined runs increase the noise.
 """
 
 from __future__ import annotations

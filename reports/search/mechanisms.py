@@ -66,11 +66,11 @@ def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, de
 
 @validated
 def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decades: Decades = 0) -> Recipe:
-    """Case `number` of a seed, of joints and forces of these `kinds` alone (of `ALL_KINDS`; in whatever order).
+    """Case `number` of a seed, with joints and forces of these `kinds`; their order has no effect.
 
-    Masses are from 0.1 to 10 kg, lengths from 0.1 m to some metres, rates some rad/s. With `decades`, masses and sizes
-    of the bodies differ by that many decades more, upwards and downwards, and so do the units of length, mass and time.
-    Raises InvalidMechanism for kinds that don't exist, or none.
+    Masses are from 0.1 to 10 kg, and lengths from 0.1 m to some metres. `decades` extends both ranges by so many powers
+    of ten in both directions, and changes the units of length, mass and time by up to so many powers. Raises
+    InvalidMechanism for unknown kinds, or without any.
     """
     if not kinds or not {*kinds} <= {*ALL_KINDS, *SINGULAR_KINDS}:
         raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(ALL_KINDS)}")
@@ -86,7 +86,7 @@ class _Draw:
 
     def __init__(self, random: np.random.Generator, kinds: Kinds, decades: int) -> None:
         self._random, self._decades = random, decades
-        self._kinds = tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if kind in kinds)  # their order is no choice
+        self._kinds = tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if kind in kinds)
 
     def whole(self, low: int, high: int) -> int:
         """Draw an integer from `low` to `high`, both included."""
@@ -99,7 +99,7 @@ class _Draw:
         return self.whole(1, one_in) == 1
 
     def recipe(self) -> Recipe | None:
-        """Draw a recipe; None if its joints leave no freedom."""
+        """Draw a recipe; None if it has no links, or neither gravity nor a motion."""
         count = self.whole(1, DRAWN_BODIES)
         moving = not self.chance(4)
         pull = self.two(10) if not moving or self.chance(2) else (0, 0)

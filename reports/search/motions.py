@@ -299,8 +299,8 @@ class _Case:
 
 
 CLAIM_SPAN = 2.0  # duration in units of the mechanism's time scale
-CLAIM_STEPS = (40, 100, 200)  # steps in CLAIM_SPAN; the case's number selects one
-SAMPLE_INTERVALS = (1, 2, 5)  # steps between samples; the case's number selects one
+# The case's number selects the number of steps in CLAIM_SPAN and the number of steps between samples.
+CLAIM_STEPS, SAMPLE_INTERVALS = (40, 100, 200), (1, 2, 5)
 CLAIMED_POSES, CLAIMED_REACTIONS, NEEDLESS_REPORT = "claimed", "claimed of reactions", "reported, though right"
 
 

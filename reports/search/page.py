@@ -41,7 +41,7 @@ ROW_INCHES = 0.24
 
 
 def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
-    """A line for each subject from the median to the largest error of the law; None without such errors."""
+    """A line for each subject from the median to the largest error of instants; None if no case has one."""
     errors_by_subject: dict[str, list[float]] = {}
     for case in cases:
         for law in LAW_CHECKS:

@@ -174,10 +174,8 @@ class Standing:
             case "torque":
                 return Torque(name, *ends, float(link.more * RATE_UNIT) * body.inertia * rate**2)
             case "force":
-                pull, direction = (
-                    float(link.more * RATE_UNIT * size) * body.mass * rate**2,
-                    float(link.turn * ANGLE_UNIT),
-                )
+                pull = float(link.more * RATE_UNIT * size) * body.mass * rate**2
+                direction = float(link.turn * ANGLE_UNIT)
                 return Force(name, body.name, second, (pull * math.cos(direction), pull * math.sin(direction)))
             case _:
                 raise InvalidMechanism(f"recipe: force {number} is a {link.kind}, which has no construction here")

@@ -144,7 +144,7 @@ class Search:
             self._run_tasks(waiting, PLANTED_LIMIT, done, watch)
 
     def shrink(self, results: Iterable[CaseResult]) -> Mapping[Shrink, Answer]:
-        """Reduce some findings of each check; the time limit of the search holds again."""
+        """Reduce some findings of each check. The time limit of the search applies to the reduction again."""
         tasks = [Shrink.of(check, case) for check, case in choose_worst(results)]
         if not tasks:
             return {}

@@ -83,7 +83,7 @@ class Take(Look):
 
 @dataclass(frozen=True)
 class Shown:
-    """A take with its motions."""
+    """The motions of a take at the instants of an animation."""
 
     take: Take
     mechanism: Mechanism
@@ -94,7 +94,7 @@ class Shown:
 
 
 def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
-    """Return a take with its motions; `missing` has the methods that have no motion."""
+    """Return the motions of a take; `missing` has the methods without a stored motion."""
     motions: dict[str, Array] = {}
     missing: dict[str, str] = {}
     spacing = take.scene.duration / take.sample_count

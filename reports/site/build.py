@@ -38,7 +38,7 @@ FILE_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)"
 DRAGGED = re.compile(r"\{(\w+)\}")  # the name of a control in braces, in the text of a lesson
 ENGINE_FILES = {"munk2d": "packages/munk2d.js", "mujoco": "packages/mujoco.js"}
 
-# The columns of the page of charts.
+# Columns of results/rows.json.
 COLUMNS = ("scene", "engine", "variant", "outcome", "settings", "step")
 NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")
 ROW_KEY = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
@@ -47,7 +47,7 @@ Files = dict[str, bytes]
 
 
 def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:
-    """Return all motions of the lessons, each once."""
+    """Return all motions of the lessons without duplicates."""
     return tuple(dict.fromkeys(task for lesson in lessons for live in lesson.scenes for task in live.stored().values()))
 
 

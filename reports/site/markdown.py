@@ -57,7 +57,7 @@ def title(text: str) -> str:
 
 
 def section(text: str, heading: str) -> str | None:
-    """Return the section of a Markdown page with this heading, including its subsections; None without the heading."""
+    """Return the section of a Markdown page with this heading, with subsections; None if the heading is missing."""
     start, rank, fenced = None, 0, False
     lines = text.splitlines()
     for index, line in enumerate(lines):

@@ -103,7 +103,7 @@ def local(url: str, address: str) -> bool:
 
 @pytest.fixture(scope="module")
 def running(chromium, address, files):
-    """A function that returns the page of a lesson with its engines loaded; each is opened once."""
+    """A function that returns the page of a lesson with loaded engines. It opens each page once."""
     if not {"packages/mujoco.wasm", "packages/munk2d.js"} <= set(files):
         pytest.skip("the site was built without its engines: tests/tools/browser.sh installs npm and emscripten")
     pages: dict[str, Any] = {}
@@ -146,7 +146,9 @@ def python_of(live: Live, values: dict[str, Any]) -> tuple[Scene, dict[str, Any]
     scene: Any = replace(live.scene, **changed)  # type: ignore[type-var]
     step = scene.duration / values.get("steps", live.steps[live.start])
     engines: dict[str, Any] = {
-        name: next(engine for label, engine in live.ways(name) if label == values.get(name, live.ways(name)[0][0]))
+        name: next(
+            engine for label, engine in live.methods(name) if label == values.get(name, live.methods(name)[0][0])
+        )
         for name in ENGINES
     }
     fields = {"munk": {"iterations": "iterations", "bias": "error_bias"}, "mujoco": {"tolerance": "tolerance"}}

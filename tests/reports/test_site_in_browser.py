@@ -52,9 +52,14 @@ MUNK_APART = {"gears": 1e-5}
 
 def moved(live: Live) -> dict[str, Any]:
     """Return settings with the last value of every slider."""
-    way = {name: live.ways(name)[-1][0] for name in ENGINES} if len(live.munk) > 2 else {}
+    methods = {name: live.methods(name)[-1][0] for name in ENGINES} if len(live.munk) > 2 else {}
     engines = {"iterations": 20, "bias": 1e-6, "integrator": 3, "tolerance": 1e-15}
-    return {"steps": live.steps[2], **engines, **way, **{slider.field: slider.values[-1] for slider in live.sliders}}
+    return {
+        "steps": live.steps[2],
+        **engines,
+        **methods,
+        **{slider.field: slider.values[-1] for slider in live.sliders},
+    }
 
 
 GIVEN = {"as shipped": lambda live: {}, "documented": lambda live: dict.fromkeys(ENGINES, DOCUMENTED), "moved": moved}

@@ -40,8 +40,8 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
     mechanism = live.scene.mechanism()
     positions = [(scene, scene.mechanism()) for scene in live.places()]
     mechanisms = [mechanism for _, mechanism in positions]
-    ways: dict[Name, list[Any]] = {
-        name: [_models(name, engine, live, mechanisms) for _, engine in live.ways(name)] for name in ENGINES
+    models: dict[Name, list[Any]] = {
+        name: [_models(name, engine, live, mechanisms) for _, engine in live.methods(name)] for name in ENGINES
     }
     stored = {key: answers.get(motion) for key, motion in live.stored().items()}
     return {
@@ -52,10 +52,10 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
         "bodies": [body.name for body in mechanism.bodies],
         "centre": None if live.centre is None else mechanism.body_index(live.centre),
         "places": [_place(live, scene, mechanism) for scene, mechanism in positions],
-        **ways,
+        **models,
         "native": {
-            name: [_native(stored.get((name, index)), way) for index, way in enumerate(ways_of_engine)]
-            for name, ways_of_engine in ways.items()
+            name: [_native(stored.get((name, index)), method) for index, method in enumerate(methods)]
+            for name, methods in models.items()
         },
         "versions": {name: f"{NAMES[name]} {version(package)}" for name, package in PACKAGES.items()},
     }
@@ -138,11 +138,11 @@ def _listed(values: NDArray[np.float64]) -> list[float | None]:
     return [round(value, DIGITS) + 0.0 if np.isfinite(value) and abs(value) < 1e6 else None for value in flat.tolist()]
 
 
-def _native(answer: Answer | None, way: Mapping[str, Any]) -> list[str] | None:
+def _native(answer: Answer | None, method: Mapping[str, Any]) -> list[str] | None:
     """Return the poses of Python's engine; with the twists if the page cannot run this method."""
     if answer is None or not answer.finished:
         return None
-    return [packed(answer.array(name)) for name in (("pose", "twist") if "why" in way else ("pose",))]
+    return [packed(answer.array(name)) for name in (("pose", "twist") if "why" in method else ("pose",))]
 
 
 def packed(values: NDArray[np.float64]) -> str:
@@ -153,7 +153,7 @@ def packed(values: NDArray[np.float64]) -> str:
 def _models(name: Name, engine: Any, live: Live, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
     """Return the models of the page's engine by slider position and step, or the reason why it cannot run them.
 
-    There is only one step if the model does not depend on it. MuJoCo's model depends on the step if the stiffness
+    The list has one step if the model does not depend on the step. MuJoCo's model depends on the step if the stiffness
     does, or if the mechanism has skates or rolling contacts.
     """
     steps = [live.scene.duration / steps for steps in live.steps]

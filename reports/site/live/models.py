@@ -61,7 +61,7 @@ def links(model: MuJoCoModel) -> tuple[tuple[float, ...], ...]:
     return tuple(records)
 
 
-STEP = 1e-3  # s; these models do not depend on the step
+STEP = 1e-3  # step [s] of pymunk's models, which do not depend on the step
 
 
 class RecordKind(IntEnum):

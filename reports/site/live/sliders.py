@@ -129,16 +129,16 @@ class Live(Look):
     def samples(self, steps: int) -> int:
         return min(self.frames, steps)
 
-    def ways(self, name: Name) -> Sequence[tuple[str, Engine | str]]:
+    def methods(self, name: Name) -> Sequence[tuple[str, Engine | str]]:
         return self.munk if name == "munk" else self.mujoco
 
     def controls(self) -> dict[str, Control]:
         steps = tuple(f"{1000 * self.scene.duration / count:.3g} ms" for count in self.steps)
-        ways = {name: tuple(label for label, _ in self.ways(name)) for name in ENGINES}
+        methods = {name: tuple(label for label, _ in self.methods(name)) for name in ENGINES}
         return {
             "steps": Control(self.steps, steps, self.start),
             **{slider.field: slider.control(self.scene) for slider in self.sliders},
-            **{name: Control(labels, labels) for name, labels in ways.items()},
+            **{name: Control(labels, labels) for name, labels in methods.items()},
             **CONTROLS,
         }
 
@@ -157,6 +157,6 @@ class Live(Look):
         return {
             (name, index): Motion(Cell(self.scene, engine, steps // samples, "failure", samples))
             for name in ENGINES
-            for index, (_, engine) in enumerate(self.ways(name))
+            for index, (_, engine) in enumerate(self.methods(name))
             if not isinstance(engine, str)
         }
