@@ -58,10 +58,10 @@ def instants(
     run = engine.build(built, dt)
     model = run.model
     if model.split_bodies:
-        return NotDeclared("a body that is cut into halves is another mechanism at one instant")
+        return NotDeclared("a body that is split into halves has other accelerations at an instant")
     start, motion = model.start(), run(1, max(steps, 1))
     if motion.warnings_of("residual"):
-        return NotDeclared("it says itself that its solver ended too early")
+        return NotDeclared("a warning of the run says that its solver ended too early")
     regularisation, model = engine.regularisation(mechanism, dt), replace(model, mechanism=mechanism)
     has_end = steps and motion.reset_at is None and np.isfinite(motion.pose).all()
     out: list[Instant] = []
@@ -204,7 +204,7 @@ def _declared_rows(
         else:
             aimed[part] = joint_rows.aimed(gap[part], slip[part])
     if unused:
-        raise RuntimeError(f"constraint {unused[0]} of MuJoCo's is none of the mechanism's rows")
+        raise RuntimeError(f"constraint {unused[0]} of MuJoCo's does not correspond to the mechanism's rows")
     return aimed, compliance, by_solver
 
 

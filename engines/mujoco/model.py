@@ -177,7 +177,7 @@ def _compiled(builder: ModelBuilder) -> Any:
     has_no_islands = option.disableflags & NO_ISLANDS == NO_ISLANDS
     if builder.user_rows and not (is_dense and has_no_islands):
         raise Unsupported(
-            "rows written in a callback need jacobian='dense' and islands=False: others are read elsewhere"
+            "rows from a callback need jacobian='dense' and islands=False, since MuJoCo stores other rows elsewhere"
         )
     try:
         compiled = builder.spec.compile()

@@ -123,7 +123,7 @@ def choose_solver(model: MuJoCoModel, solvers: Sequence[str]) -> Any:
         if residuals[solver] < SOLVED_RESIDUAL:
             return start
     if not residuals:
-        raise Unsupported("rows are written in a callback, and PGS has built its matrix by then; add Newton or CG")
+        raise Unsupported("PGS builds its matrix before a callback writes the rows; add Newton or CG to the solvers")
     best = min(residuals, key=residuals.__getitem__)
     model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{best.upper()}")
     return model.start()

@@ -96,12 +96,12 @@ def urdf(mechanism: Mechanism) -> str:
         raise Unsupported(f"joint {joint.name!r} closes a loop, which a URDF can't hold")
     for joint in mechanism.joints:
         if isinstance(joint, Drive) and not tree.holds(joint):
-            raise Unsupported(f"drive {joint.name!r} prescribes a motion, which URDF has no word for")
+            raise Unsupported(f"drive {joint.name!r} prescribes a motion, which URDF cannot represent")
     root = xml.Element("robot", {"name": "crosscheck"})
     xml.SubElement(xml.SubElement(root, "mujoco"), "option", {"gravity": _upright(*mechanism.gravity)})
     if mechanism.twist.any():
         root.append(
-            xml.Comment(" The mechanism starts in motion, which URDF has no word for: here it starts at rest. ")
+            xml.Comment(" URDF cannot state the initial velocities of the mechanism, so it starts at rest here. ")
         )
     xml.SubElement(root, "link", {"name": "world"})
     anchors = {link.body: link.anchor for link in tree.links}
@@ -114,7 +114,7 @@ def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapp
     """Add a body and its joint. The frame of the body is at its joint and parallel to the world at t = 0."""
     body = mechanism.bodies[link.body]
     if link.kind == "free" or (link.kind == "slot" and link.turns):
-        raise Unsupported(f"body {body.name!r} is held by less than a hinge or a slide, which URDF has no joint for")
+        raise Unsupported(f"body {body.name!r} has more freedom than a hinge or a slide, which URDF cannot represent")
     inertial = xml.SubElement(xml.SubElement(root, "link", {"name": body.name}), "inertial")
     xml.SubElement(inertial, "origin", {"xyz": _upright(-link.anchor[0], -link.anchor[1]), "rpy": "0 0 0"})
     xml.SubElement(inertial, "mass", {"value": repr(float(body.mass))})
@@ -142,9 +142,9 @@ def _upright(x: float, y: float) -> str:
 def mjcf(model: MuJoCoModel) -> str:
     """The MJCF of a model with unit 1 kg. Raises Unsupported if our code changes the model or runs in its steps."""
     if model.hooks:
-        raise Unsupported("this variant writes rows while it steps: a file would not run without this suite")
+        raise Unsupported("this variant needs our code in every step, which a file does not contain")
     if model.softening != 1:
-        raise Unsupported("this variant changes compliances that no file can state; take default or tuned")
+        raise Unsupported("this variant changes compliances, which a file cannot state; choose default or tuned")
     root = xml.fromstring(model.spec.to_xml())
     root.set("model", "crosscheck")
     root.remove(root.find("option"))  # pyright: ignore[reportArgumentType]

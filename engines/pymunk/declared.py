@@ -189,7 +189,7 @@ def _converged(
     while True:
         iterations = math.ceil(math.log(CONVERGED_RESIDUAL) / math.log(rho)) + 5 if rho > 0 else 5
         if iterations > LAW_ITERATION_LIMIT:
-            return NotDeclared(f"an iteration leaves {rho:.6f} of the slowest mode, so that they do not converge")
+            return NotDeclared(f"an iteration leaves {rho:.6f} of the slowest mode, so the iterations do not converge")
         if engine.slot == "groove":  # the convergence factor does not describe the impulses of a groove joint
             iterations = LAW_ITERATION_LIMIT
         model = engine.model_with(built, dt, replace(engine.plan(built, 0.0), iterations=iterations))

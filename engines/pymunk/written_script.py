@@ -70,20 +70,22 @@ def script(engine: Any, mechanism: Mechanism, dt: float) -> str:
     Raises Unsupported for a method that needs our code between its steps.
     """
     if not isinstance(engine, Pymunk):
-        raise Unsupported("this variant is made of several runs; a script has one: take default or tuned")
+        raise Unsupported("this variant consists of several runs, but a script makes one; choose default or tuned")
     for joint in mechanism.joints:
         if isinstance(joint, Roll | Skate):
-            reason = "a roll is a contact of shapes there" if isinstance(joint, Roll) else "nothing holds a skate there"
+            reason = "and a contact of shapes is no roll" if isinstance(joint, Roll) else "and no joint is a skate"
             raise Unsupported(
-                f"joint {joint.name!r}: pymunk has no such joint, {reason}; a script would be no mechanism"
+                f"joint {joint.name!r}: pymunk has no such joint, {reason}; a script would be another mechanism"
             )
     constant = tuple(force for force in mechanism.forces if type(force) is Force or type(force) is Torque)
     others = tuple(force for force in mechanism.forces if force not in constant)
     model = engine.model(replace(mechanism, forces=others), dt)
     if model.before_step or model.after_step or engine.leapfrog:
-        raise Unsupported("this variant needs code of ours before or after every step; its script would not be its own")
+        raise Unsupported("this variant needs our code before or after every step, which a script does not contain")
     if model.unit != 1:
-        raise Unsupported("this variant counts time in steps, since a power of its error_bias would underflow")
+        raise Unsupported(
+            "this variant uses its step as the unit of time, since its error_bias would underflow in seconds"
+        )
     body = "\n    ".join(object_lines(model.space, model.bodies))
     push_function = _push_function(mechanism, constant, model.bodies)
     again, push = ("\n        push(space)", "\n    push(space)") if push_function else ("", "")
@@ -122,7 +124,7 @@ def _push_function(mechanism: Mechanism, forces: Sequence[Force | Torque], bodie
             if force.second_point != (0.0, 0.0):
                 raise Unsupported(
                     f"force {force.name!r} acts off the centre of mass, where its moment turns with the body; that "
-                    "needs code before every step that no reader of a space could see"
+                    "needs code before every step, which a reader of the space could not see"
                 )
             pushed[mechanism.body_index(force.second), :2] += force.force
         else:

@@ -121,7 +121,7 @@ def test_a_drive_comes_back_from_mjcf_as_a_drive_and_an_armature_that_is_only_la
 def test_what_no_constraint_of_pymunk_stands_for_has_no_script():
     body = Body("plate", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     pushed = Mechanism((body,), (), (0.0, 0.0), (Force("push", "plate", (0.1, 0.0), (0.0, 1.0)),))
-    for mechanism, reason in ((pushed, "'push' acts off the centre of mass"), (rod_in_a_slot(), "code of ours")):
+    for mechanism, reason in ((pushed, "'push' acts off the centre of mass"), (rod_in_a_slot(), "our code")):
         with pytest.raises(Unsupported, match=reason):
             script(PYMUNK, mechanism, 1e-3)
 

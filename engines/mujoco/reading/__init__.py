@@ -58,7 +58,7 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
     _note_gravity_across(planar)
     _note_limits_and_contacts(planar)
     for element in without:
-        planar.note(element, "left out at your word, in your model too")
+        planar.note(element, "switched off as you requested, in your model too")
     elements = bodies, joints, gravity, (*acting, *weights)
     closed = closed_positions(*elements) if closing else None
     if closed is not None:
@@ -87,7 +87,7 @@ def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarMod
     if model.nv == 0:
         raise refuse("the model", "nothing in it can move")
     if model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_SLEEP):
-        reason = "MuJoCo stops a tree of bodies that is slow, even a pendulum at its turning point, which no joint does"
+        reason = "MuJoCo stops slow bodies, even a pendulum at its turning point, but joints do not"
         raise refuse("flag sleep", f"{reason}; {left_out('sleep')}")
     _refuse_not_finite(model, started)
     # Contacts and the solver are not evaluated yet, since a model with too many bodies is refused first.
@@ -141,7 +141,7 @@ def _note_limits_and_contacts(planar: PlanarModel) -> None:
     low, high = model.jnt_range.T
     for index in np.flatnonzero((low == high) & (low != 0) & (model.jnt_limited == 0)):
         reason = f"MuJoCo does not limit it, since both ends of its range are {low[index]:g}"
-        planar.note(name_of(model, JOINT, index), f"{reason}; an equality holds it there")
+        planar.note(name_of(model, JOINT, index), f"{reason}; an equality would keep it there")
     if is_off(model, "CONSTRAINT"):
         return
     for kind, limited in ((JOINT, model.jnt_limited), (TENDON, model.tendon_limited)):
@@ -174,7 +174,7 @@ def _with_armature(planar: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
                 label = planar.names.new(f"{body.name}: armature has no weight")
                 weights.append(Force(label, body.name, (0.0, 0.0), weight))
         else:
-            reason = "its armature is an inertia of a relative motion, which no body has"
+            reason = "its armature is an inertia of a relative motion, which is no property of a body"
             raise refuse(element, f"{reason}; {left_out('armature')}")
     return tuple(bodies), weights
 

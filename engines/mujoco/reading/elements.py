@@ -100,7 +100,7 @@ def equalities(planar: PlanarModel) -> list[Joint]:
         read_equality, _ = EQUALITIES[kind]
         joints = read_equality(planar, index, element)
         if joints and not len(equality_rows(data, index)):
-            planar.note(element, "it holds what the joints hold already, so MuJoCo makes no row of it, nor do we")
+            planar.note(element, "the joints imply it, so MuJoCo makes no row for it, and it is left out")
             joints = []
         planar.held[index] = tuple(joints)
         out += joints
@@ -128,7 +128,7 @@ def _ends(planar: PlanarModel, index: int) -> Ends:
 def _read_connect(planar: PlanarModel, index: int, element: str) -> list[Joint]:
     ends = _ends(planar, index)
     if ends[0] == ends[1]:
-        planar.note(element, "it holds a body to itself")
+        planar.note(element, "it joins a body to itself")
         return []
     return [Pin(planar.new_name(EQUALITY, index), *planar.between(*ends))]
 
@@ -154,7 +154,7 @@ def _term(planar: PlanarModel, joint: int, factor: float) -> Term:
         return Term(planar.name(parent), planar.name(group), factor * float(planar.groups.signs[joint]))
     hinges, slides = planar.joints_of(group, HINGE), planar.joints_of(group, SLIDE)
     if hinges and slides[0] < hinges[0] < slides[-1]:
-        reason = "its body turns between two slides, of which no sum is read; give the slides a body of their own"
+        reason = "its hinge is between two slides, which is not read in a sum; give the slides a separate body"
         raise refuse(name_of(planar.model, JOINT, joint), reason)
     at = data.xanchor[hinges[0]] if hinges else planar.centre(group)
     # With two slides, the coordinate of a slide changes along the normal of the other slide.
@@ -202,7 +202,10 @@ def ends_of_tendon(planar: PlanarModel, tendon: int) -> Ends:
     sites = model.wrap_objid[first_wrap : first_wrap + 2]
     begin, end = planar.data.site_xpos[sites]
     if abs((end - begin) @ planar.frame.normal) > PLANAR * max(1.0, model.stat.extent):
-        raise refuse(element, "its two sites are at different distances from the plane, so its length is not ours")
+        raise refuse(
+            element,
+            "its two sites are at different distances from the plane, so its length differs from that in the plane",
+        )
     first, second = (planar.group(body) for body in model.site_bodyid[sites])
     return first, second, begin, end
 
@@ -232,7 +235,7 @@ def _read_sum(planar: PlanarModel, index: int, element: str, parts: WeightedJoin
         terms, offset = terms_of(planar, parts)
         return [Coupling(label, terms, offset - open_by)]
     if not groups:
-        planar.note(element, "the sum that it holds does not change")
+        planar.note(element, "no coordinate changes the sum that it keeps constant")
         return []
     *others, second = groups
     first = others[0] if others else -1
@@ -253,7 +256,7 @@ def _read_tendon(planar: PlanarModel, index: int, element: str) -> list[Joint]:
     if other >= 0:
         other_parts, share = wrapped_joints(model, other), -float(model.eq_data[index][1])
         if parts is None or other_parts is None:
-            reason = "it couples two tendons of which one goes through sites; only those over joints are read"
+            reason = "it couples two tendons and one goes through sites; only tendons over joints are read"
             raise refuse(element, reason)
         parts = [*parts, *((joint, share * factor) for joint, factor in other_parts)]
         open_by += share * float(extension[other])

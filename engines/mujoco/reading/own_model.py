@@ -219,8 +219,8 @@ class OwnMuJoCo:
             return f"{max(largest[0], largest[1]):.2g} m and {largest[2]:.2g} rad"
 
         words = (
-            f"they are up to {self.tilt:.2g} rad off, as rounding of a file makes them, and taken as exact; with exact "
-            f"ones your model moves differently by {difference(run, None)} in {run.t[-1]:.3g} s"
+            f"they differ by up to {self.tilt:.2g} rad from exact ones, as after rounding, and are read as exact; with "
+            f"exact ones your model moves differently by {difference(run, None)} in {run.t[-1]:.3g} s"
         )
         if self.has_soft_joints:
             stiff = self.changes(self.dt)[-1]

@@ -56,7 +56,7 @@ def read(
     notes = [*start_notes, *imported.notes]
     if len({shape.body for shape in space.shapes if not shape.sensor}) > 1:
         notes.append(Note("contacts", "they are left out, since none is made in the judged motion"))
-    notes += [Note(element, "left out at your word, in your model too") for element in without]
+    notes += [Note(element, "switched off as you requested, in your model too") for element in without]
     return Reading(mechanism, model, tuple(notes))
 
 
@@ -101,7 +101,12 @@ class SpaceReader:
             stopped = f"it steps its space by {step:.4g} s; it was stopped before the first step, which is the start"
             notes.append(Note("the script", stopped))
         if script.ahead:
-            notes.append(Note("its first step", "it brings velocities half a step ahead, as your runs here begin too"))
+            notes.append(
+                Note(
+                    "its first step",
+                    "it advances the velocities by half a step, and your runs here start in the same way",
+                )
+            )
         if script.parts > 1:
             notes.append(Note("space.step", f"each call makes {script.parts} steps, as the script says"))
         source = Source(

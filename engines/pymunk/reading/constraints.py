@@ -20,7 +20,7 @@ from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector
 
 Array = NDArray[np.float64]
 LIMIT_JOINTS = (constraints.SlideJoint, constraints.RotaryLimitJoint)
-EQUALITY = "its min and max are equal, so it is taken as a {}; pymunk's {} holds from both sides at once"
+EQUALITY = "its min and max are equal, so it is read as a {}; pymunk's {} is the joint for this"
 # The ends of a limit count as equal up to this difference [rad], which for lengths above 1 m is relative.
 EQUAL_ENDS = 1e-12
 READ_BODIES = {
@@ -74,7 +74,7 @@ class ImportedSpace:
 def import_space(space: pymunk.Space) -> ImportedSpace:
     out = ImportedSpace(space)
     if space.damping != 1:
-        raise refuse("space.damping", f"it is {space.damping:g}: a drag against nothing has no ideal counterpart here")
+        raise refuse("space.damping", f"it is {space.damping:g}: this drag has no ideal counterpart here")
     moving = [body for body in space.bodies if _moves(body)]
     if not moving:
         raise refuse("the space", "nothing in it can move")
@@ -140,7 +140,7 @@ def _add_push(out: ImportedSpace, body: pymunk.Body) -> None:
     if torque:
         out.forces.append(Torque(out.names.new(f"torque on {name}"), None, name, torque))
     out.pushed[out.moving.index(body)] = ((float(x), float(y)), torque)
-    reason = "pymunk takes it off after one step; it is taken as set anew before every step, by a loop of yours"
+    reason = "pymunk resets it in every step; it is assumed that your loop sets it again before every step"
     out.notes.append(Note(f"the force or torque that stands on {name}", reason))
 
 
@@ -153,10 +153,10 @@ def _add_constraint(out: ImportedSpace, constraint: constraints.Constraint, labe
         out.notes.append(Note(label, "its limit is left out, since it is not reached in the judged motion"))
         return
     if out.name_of(a) == out.name_of(b):
-        out.notes.append(Note(label, "it joins what stands still"))
+        out.notes.append(Note(label, "it joins two bodies that do not move relative to each other"))
         return
     if constraint.max_force != inf:
-        raise refuse(label, f"its force is limited to {constraint.max_force:g}, which no ideal joint is")
+        raise refuse(label, f"its force is limited to {constraint.max_force:g}, but an ideal joint has no limit")
     if getattr(constraint, "_pre_solve_func", None) or getattr(constraint, "_post_solve_func", None):
         raise refuse(label, "a function of its own runs before or after it is solved")
     add = next((entry.add for kind, entry in READ_CONSTRAINTS.items() if isinstance(constraint, kind)), None)

@@ -297,7 +297,10 @@ def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> b
     no name, or if the user's own lines advance the velocities by half a step.
     """
     if not script.name:
-        raise refuse("the script", "its space has no name of its own where it is stepped, so no line can change it")
+        raise refuse(
+            "the script",
+            "its space has no name where it is stepped, so no line can be written that changes its settings",
+        )
     lines = path.read_text(encoding="utf-8").splitlines()
     insert_at = None if script.line is None else script.line - 1
     marks = [next((i for i, line in enumerate(lines) if line.strip() == mark), None) for mark in (BEGIN, END)]
@@ -308,7 +311,8 @@ def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> b
         del lines[begin:end]
     if script.ahead and not has_earlier:
         raise refuse(
-            "the script", "its own lines start half a step ahead of a step of that length: change them by hand"
+            "the script",
+            "its own lines advance the velocities by half a step of the present length; change them by hand",
         )
     settings = _setting_lines(script, step, change, has_earlier)
     insert_at = len(lines) if insert_at is None else insert_at
