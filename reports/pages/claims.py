@@ -37,7 +37,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         return len(values) > 1 and all(fine < coarse / factor for coarse, fine in pairwise(values))
 
     def stays(method: str, skip: int = 0) -> bool:
-        """Whether errors at neighbouring steps differ by less than a quarter, from the error `skip` on."""
+        """Whether errors at neighbouring steps differ by less than a quarter; the first `skip` errors are ignored."""
         values = errors((method,), "angle")[skip:]
         return len(values) > 1 and all(0.8 < fine / coarse < 1.25 for coarse, fine in pairwise(values))
 

@@ -117,9 +117,9 @@ class Sources:
 class Finding:
     """A finding with its numbers.
 
-    title, text: Markdown, without the link to `page`
-    contradicted: the claims that the rows do not confirm
-    lines, x, y: the lines of the picture and the labels of its axes
+    title, text: Markdown, without the link to `page`.
+    contradicted: the claims that the rows do not confirm.
+    lines, x, y: the lines of the picture and the labels of its axes.
     """
 
     name: str

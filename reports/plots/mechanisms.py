@@ -99,7 +99,7 @@ def visibly_off(mechanism: Mechanism, truth: Array, pose: Array, size: float) ->
 
 Points = tuple[tuple[float, float], ...]
 
-LEAST_OPACITY = 0.12  # of the earliest pose
+LEAST_OPACITY = 0.12
 LINE_BREAK = np.full((1, 2), np.nan)
 BLOCK_SIZE = 0.045  # side of the rectangle that stands for a body with one joint point, as a fraction of the picture
 
@@ -108,10 +108,10 @@ BLOCK_SIZE = 0.045  # side of the rectangle that stands for a body with one join
 class Strip:
     """One panel: `count` poses of a scene's reference motion from `start` to `end` [s].
 
-    ends: points of bodies without a joint, such as a free end, in the body's frame [m]
-    spread: shift between successive poses to the right [m]
-    trace: a body and one of its points, whose path is drawn
-    floor: whether a line at y = 0 is drawn
+    ends: points of bodies without a joint, such as a free end, in the body's frame [m].
+    spread: shift between successive poses to the right [m].
+    trace: a body and one of its points, whose path is drawn.
+    floor: whether a line at y = 0 is drawn.
     """
 
     scene: Scene

@@ -16,8 +16,8 @@ from reports.plots.theme import FIGURE_WIDTH, LIGHT, drawing, style_axes
 
 Array = NDArray[np.float64]
 
-PANEL_MARGIN = 0.07  # as a fraction of the panel's larger side
-MIN_HEIGHT, MAX_HEIGHT = 1.4, 5.0  # of a panel, in inches
+PANEL_MARGIN = 0.07
+MIN_HEIGHT, MAX_HEIGHT = 1.4, 5.0  # inches
 MIN_ASPECT = 0.7  # of width to height, so that the labels of ticks do not overlap
 
 
@@ -25,9 +25,9 @@ MIN_ASPECT = 0.7  # of width to height, so that the labels of ticks do not overl
 class Path:
     """A line through points (points, 2). Paths with the same label share an entry of the legend.
 
-    colour: a role of the theme
-    framed: whether the limits of the axes include the path; a wrong motion may leave the panel
-    dot: whether the end has a dot
+    colour: a role of the theme.
+    framed: whether the limits of the axes include the path; a wrong motion may leave the panel.
+    dot: whether the end has a dot.
     """
 
     points: ArrayLike

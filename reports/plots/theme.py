@@ -85,7 +85,7 @@ RC_SETTINGS = {
     "hatch.linewidth": 0.6,
     "legend.frameon": False,
     "legend.labelcolor": LIGHT.ink,
-    "axes.titlecolor": LIGHT.ink,  # of titles at the left, which are not `Axes.title`
+    "axes.titlecolor": LIGHT.ink,
     "axes.titley": 1.0,  # without a fixed position, matplotlib measures all ticks to place titles
 }
 

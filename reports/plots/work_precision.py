@@ -223,8 +223,8 @@ CostErrorPairs = Sequence[tuple[float, float]]  # (CPU seconds per simulated sec
 class ComparedRow:
     """A row of panels.
 
-    lines: column -> engine -> points
-    absent: column -> reason -> engines without a line
+    lines: column -> engine -> points.
+    absent: column -> reason -> engines without a line.
     """
 
     title: str

@@ -35,7 +35,7 @@ class Column(StrEnum):
     SHIPPED = "as shipped"
     SETTINGS = "documented settings"
     CODE = "with our code"
-    NAIVE = "naive"  # code outside the engine enforces a joint
+    NAIVE = "naive"
     WHOLE = ""  # methods of an engine without variants of COLUMN_OF_VARIANT
 
 

@@ -26,8 +26,8 @@ from reports.write.templates import template
 class RenderedExperiment:
     """The texts and tables of an experiment.
 
-    observations, grid: Markdown tables; empty without observations or rows
-    unrun: whether the experiment has cells or tasks, but none was run
+    observations, grid: Markdown tables; empty without observations or rows.
+    unrun: whether the experiment has cells or tasks, but none was run.
     """
 
     title: str

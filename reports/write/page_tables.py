@@ -175,9 +175,9 @@ STEPS_LINE = re.compile(r"^steps = \d+.*$", re.MULTILINE)
 class Program:
     """The program of a recommended method.
 
-    every: the number of steps between samples
-    file: its path in the folder of the results
-    text: empty if there is no such file
+    every: the number of steps between samples.
+    file: its path in the folder of the results.
+    text: empty if there is no such file.
     """
 
     method: str

@@ -35,13 +35,13 @@ RunCells = Callable[[list[Cell]], Mapping[Cell, Measurement]]
 class StoredColumn:
     """A column of a map in the file, the largest step first.
 
-    subject: the map's name
-    longest: the largest step [s]
-    counts: the number of steps of each run
-    outcomes: `Outcome.letter` or NOT_RUN for each step
-    errors: the decimal logarithm of the angle error [rad]; NaN for cells that were not run or did not finish
-    gives: the result of `tearing_step` [s]
-    left: the result of `residual_of_sweeps`
+    subject: the map's name.
+    longest: the largest step [s].
+    counts: the number of steps of each run.
+    outcomes: `Outcome.letter` or NOT_RUN for each step.
+    errors: the decimal logarithm of the angle error [rad]; NaN for cells that were not run or did not finish.
+    gives: the result of `tearing_step` [s].
+    left: the result of `residual_of_sweeps`.
     """
 
     subject: str

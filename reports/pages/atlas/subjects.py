@@ -28,8 +28,8 @@ MIN_STEPS = 10  # number of steps of a run at the largest step
 class StabilityMap:
     """A map of outcomes over step and parameter. `subjects.toml` explains the fields that are not explained here.
 
-    make: parameter value -> scene
-    frequency: scene -> frequency of the fastest motion [rad/s], which predicts the step of failure
+    make: parameter value -> scene.
+    frequency: scene -> frequency of the fastest motion [rad/s], which predicts the step of failure.
     """
 
     name: str

@@ -33,7 +33,7 @@ MAX_POSES_CHECKED = 101
 
 
 def returned(curves: Centrodes) -> tuple[float, float]:
-    """(largest distance [m] between the body and the rolling body curve, range of rotation [rad] that was checked).
+    """(largest distance [m] of the body's origin in the poses and in rolling, checked range of rotation [rad]).
 
     Raises InvalidMechanism if the curves can't roll on each other.
     """

@@ -3,8 +3,7 @@
 Each slip has a document slips/NUMBER.md with the printed formula, the right one, and a script that computes both.
 
 Engines are evidence that does not use the chapter's formulas. Each engine runs a mechanism, and the accelerations are
-differences of its velocities. The only formulas assumed are linear: a bar's end is twice as far from its pin as the
-bar's centre.
+differences of its velocities.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ REFEREES: tuple[Engine, ...] = (pymunk.EXTENDED, mujoco.EXTENDED, Lagrange("rk4"
 
 # Time between samples [s]. With this value, differences of order eight have far smaller errors than the engines.
 WINDOW_SPACING = 1e-3
-RUN_SAMPLES = 300  # samples of a run; only the last POINTS samples are used
+RUN_SAMPLES = 300
 # Weights of nine points in the first and second derivatives at the middle point.
 FIRST_DERIVATIVE = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND_DERIVATIVE = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
@@ -180,10 +179,7 @@ class Ruling:
 
 
 def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...], list[str]]:
-    """(rulings sorted by the slip's number, messages about failed runs).
-
-    An engine that does not build the mechanism is in neither.
-    """
+    """(rulings sorted by the slip's number, messages about failed runs); refusals of mechanisms are in neither."""
     decided: list[Ruling] = []
     failed: list[str] = []
     for task, answer in answers:
@@ -206,11 +202,11 @@ def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...],
 class Erratum:
     """One slip of the chapter.
 
-    printed, right: both formulas as text
-    deciding: a description of the derivative that decides
-    dimensions: whether physical dimensions alone show the slip; the size of the error then depends on the units
-    quoted, corrected: both formulas in LaTeX
-    script: computes the values; empty for a slip of wording
+    printed, right: both formulas as text.
+    deciding: a description of the derivative that decides.
+    dimensions: whether physical dimensions alone show the slip; the size of the error then depends on the units.
+    quoted, corrected: both formulas in LaTeX.
+    script: computes the values; empty for a slip of wording.
     """
 
     number: int

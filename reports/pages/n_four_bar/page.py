@@ -54,9 +54,9 @@ def figures(material: Material) -> dict[str, str]:
 def context(material: Material) -> Mapping[str, Any]:
     """Numbers for the text.
 
-    exact: period and singular instants [s] by scene
-    failed: a function that states whether all motions of a method are wrong
-    soft: number and range of the errors of SOFT_LOOPS; UNMEASURED unless all motions of SOFT_LOOPS are wrong
+    exact: period and singular instants [s] by scene.
+    failed: a function that states whether all motions of a method are wrong.
+    soft: number and range of the errors of SOFT_LOOPS; UNMEASURED unless all motions of SOFT_LOOPS are wrong.
     """
     look_up = lookups(material, LINKAGES_IN_A_ROW)
 

@@ -27,10 +27,10 @@ POINTS_PER_CURVE = 241
 class Roulette:
     """A rolling body and the path of one of its points.
 
-    point: in the body's frame [m]
-    path: rotations [rad] of the body at the ends of the path
-    shown: rotations [rad] at which the body is drawn
-    ground, body: arcs [m] between which the curves are drawn; None for the whole body
+    point: in the body's frame [m].
+    path: rotations [rad] of the body at the ends of the path.
+    shown: rotations [rad] at which the body is drawn.
+    ground, body: arcs [m] between which the curves are drawn; None for the whole body.
     """
 
     title: str

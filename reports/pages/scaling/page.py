@@ -53,8 +53,8 @@ FIT_POINTS = 3  # the fit uses the largest sizes, at which constant costs are sm
 class SizePoint:
     """A method at one number of links (`size`).
 
-    step: CPU time of a step [s]
-    error: the largest angle error [rad]; NaN if the run was made for its CPU time only
+    step: CPU time of a step [s].
+    error: the largest angle error [rad]; NaN if the run was made for its CPU time only.
     """
 
     size: int
@@ -167,7 +167,7 @@ SMALL_SIZES = (1, 3, 10, 20)
 LARGE_SIZES = (50, 100)
 COSTLY_SIZES = (300, 1000)  # run for a few steps only, to measure their CPU time
 PENDULUM_SAMPLES = 5
-FEW_STEPS = 4  # at COSTLY_SIZES
+FEW_STEPS = 4
 MORE_STEPS = 40  # of cheap methods at COSTLY_SIZES, because their first step is slower than the next ones
 
 FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
@@ -198,7 +198,7 @@ SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
 CAPPED = ceil(sqrt(ITERATION_LIMIT / SWEEPS_OVER_SQUARE))
 
 # (smallest, largest) size of a fit. Below CAPPED links, the number of iterations of pymunk tuned grows with the size.
-# At COSTLY_SIZES, a large part of its few steps are first steps, which have more iterations.
+# At COSTLY_SIZES, both methods make few steps, and the first of them have more iterations.
 SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
     "pymunk tuned": (CAPPED, max(LARGE_SIZES)),
     "pymunk extended": (0, max(LARGE_SIZES)),

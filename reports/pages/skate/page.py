@@ -34,7 +34,7 @@ from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
 
 BLADE_LENGTH = 0.35  # m
-PARKED: Triple = (0.0, 1.0, 0.0)  # final pose of parking; the initial pose is (0, 0, 0)
+PARKED: Triple = (0.0, 1.0, 0.0)
 
 
 def parking() -> Figure:
@@ -203,9 +203,9 @@ def uniform_conditions() -> str:
 def context(material: Material) -> Mapping[str, Any]:
     """Tables, and functions that look up rows of the sleigh and return UNMEASURED if there is no row.
 
-    at: a method's row nearest to a step [s]
-    least: the row of an engine's variant with the least position error
-    finest: a method's row at the smallest step with a position error
+    at: a method's row nearest to a step [s].
+    least: the row of an engine's variant with the least position error.
+    finest: a method's row at the smallest step with a position error.
     """
     rows = Rows(material.sweep((SLEIGH_AHEAD,)))
     enforcement = enforcement_by_method(

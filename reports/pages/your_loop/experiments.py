@@ -27,9 +27,9 @@ MILLISECONDS_PER_SAMPLE = 10
 # The seed is the hash of the last commit before this code was written, so it was not chosen for its results.
 COMMIT = "007b1fa1"
 COUNT = 60  # mechanisms of each kind
-LEAST_SAMPLES = 20  # a mechanism whose motion is known for fewer samples is drawn again
+LEAST_SAMPLES = 20
 SCALE_EXPONENT = 1.0  # each number is multiplied by 2**x with x between -SCALE_EXPONENT and SCALE_EXPONENT
-ANGLE_FIELDS = ("start", "angle", "start_angle")  # drawn from -pi to pi
+ANGLE_FIELDS = ("start", "angle", "start_angle")
 UNCHANGED_FIELDS = ("links", "duration", "horizon", "branch", "friction", "density", "gravity")
 
 

@@ -32,8 +32,8 @@ LOOP, SLIDER, CHAIN, DISC, SKATE = map(
 class PastedCase:
     """A kind of mechanism in one engine.
 
-    before: the engine as shipped; None if it lacks the joint
-    after: the engine with the lines of the page
+    before: the engine as shipped; None if it lacks the joint.
+    after: the engine with the lines of the page.
     """
 
     title: str
@@ -136,8 +136,8 @@ def code_before_step(engine: str) -> str:
 def context(material: Material) -> Mapping[str, Any]:
     """The lines and tables.
 
-    reactions: relative errors of the joint forces in the closed linkage, by engine
-    fresh: `spread` of the closed linkage as shipped and with the lines, by engine
+    reactions: relative errors of the joint forces in the closed linkage, by engine.
+    fresh: `spread` of the closed linkage as shipped and with the lines, by engine.
     """
     earlier = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
     first = {"mujoco": MUJOCO_CASES[0], "pymunk": PYMUNK_CASES[0]}
