@@ -1,5 +1,4 @@
-"""The claims of methods with an estimate: near a singular position, where all runs may err alike, and on random
-mechanisms, at any sampling.
+"""The claims of methods with an error estimate, near a singular position and in random mechanisms.
 
 `reports.search.mechanisms` draws trees and loops of up to six bodies, of all joints and force elements.
 """
@@ -35,8 +34,9 @@ DT, STEPS = 2e-3, 100
 
 
 def toggle(miss: float) -> Mechanism:
-    """A bar on a pin of the ground, and another bar on it that falls. A strut to the ground holds the first: its line
-    misses the pin by `miss` [m], so that its force is torque / miss, and no motion of the first bar is exact.
+    """A bar that a pin and a strut hold at rest, and a second bar that falls on it.
+
+    The line of the strut misses the pin by `miss` [m], so that its force is torque / miss.
     """
     bars = bar("held", (0.0, 0.0), (1.0, 0.0)), bar("falling", (1.0, 0.0), (1.6, 0.3))
     arm = float(np.hypot(0.6, 0.3)) / 2
@@ -56,7 +56,7 @@ def toggle(miss: float) -> Mechanism:
     ],
     ids=lambda value: getattr(value, "name", str(value)),
 )
-def test_a_displacement_above_the_claim_is_reported_before(engine: Engine, miss: float):
+def test_a_motion_is_unresolved_before_its_displacement_exceeds_the_claim(engine: Engine, miss: float):
     linkage = toggle(miss)
     run = engine.build(linkage, DT)(STEPS, 1)
     moved = np.abs(run.pose[:, 0] - linkage.pose[0]).max(axis=1)
@@ -67,8 +67,8 @@ def test_a_displacement_above_the_claim_is_reported_before(engine: Engine, miss:
 
 
 def test_reactions_that_a_displacement_changes_are_reported():
-    # Both poses below are right to the claim. The strut's force is the torque over the miss, which the displacement of
-    # the first one changes by some percent.
+    # The errors of both poses are within the claim. The displacement of the first changes the strut's force by some
+    # percent.
     for miss, is_reported in ((5e-6, True), (1e-3, False)):
         linkage = toggle(miss)
         run, truth = mujoco.EXTENDED.build(linkage, DT)(10, 1), TRUTH.build(linkage, DT)(10, 1)
@@ -78,12 +78,12 @@ def test_reactions_that_a_displacement_changes_are_reported():
         assert any("reactions are resolved" in warning for warning in run.warnings) == is_reported
 
 
-def test_the_displacement_that_closes_gaps_leads_back_whatever_the_masses():
+def test_the_displacement_closes_the_gaps_for_any_masses():
     linkage = toggle(1e-3)
     heavy = replace(linkage, bodies=(linkage.bodies[0], replace(linkage.bodies[1], mass=1e6)))
     for described in (linkage, heavy):
         pose = np.repeat(described.pose[None], 3, axis=0)
-        pose[1:, 0, 2] += 1e-7  # the first bar turned about its own centre
+        pose[1:, 0, 2] += 1e-7  # rotation of the first bar about its centre
         t = np.arange(3.0)
         moved = closing(described, t, pose)
         assert np.abs(described.gap(pose + moved, t)).max() < 1e-3 * np.abs(described.gap(pose, t)).max()
@@ -91,7 +91,7 @@ def test_the_displacement_that_closes_gaps_leads_back_whatever_the_masses():
         assert not closing(described, t, np.full_like(pose, np.nan)).any()
 
 
-def test_reactions_at_a_displaced_pose_are_those_that_give_the_same_accelerations():
+def test_reactions_at_a_displaced_pose_give_the_same_accelerations():
     linkage = pendulum()
     change = np.array([[[0.3, -2.0, 1.0]]])
     pose, moved = linkage.pose[None], np.full((1, 1, 3), 1e-3)
@@ -102,7 +102,7 @@ def test_reactions_at_a_displaced_pose_are_those_that_give_the_same_acceleration
     assert displaced_reaction(linkage, pose, force, 0 * moved) == pytest.approx(force, rel=1e-9)
 
 
-def test_the_search_counts_a_silent_error_as_a_fault_and_a_report_of_a_right_motion_not():
+def test_the_search_counts_an_unreported_error_but_not_a_false_warning_as_a_fault():
     linkage = pendulum()
     truth = TRUTH.build(linkage, DT)(STEPS, 1)
     right = replace(truth, estimate=np.zeros_like(truth.pose))
@@ -115,7 +115,7 @@ def test_the_search_counts_a_silent_error_as_a_fault_and_a_report_of_a_right_mot
     assert NEEDLESS_REPORT not in check_claims(linkage, wrong, truth)
 
 
-def test_an_error_of_a_force_is_counted_in_the_largest_force_and_not_in_that_of_a_stiff_spring_which_does_not_pull():
+def test_errors_of_forces_are_relative_to_the_largest_acting_force():
     linkage = pendulum()
     x, y, _ = linkage.pose[0]
     stiff = replace(linkage, forces=(Spring("s", None, "bar", (float(x), float(y) + 1.0), (0.0, 0.0), 1e8, 1.0),))
@@ -163,7 +163,7 @@ def test_random_mechanisms_are_within_the_claim_or_unresolved(engine):
 
 @pytest.mark.slow
 @CLAIMING
-def test_a_thousand_mechanisms_are_so_and_at_most_two_in_a_hundred_right_ones_are_unresolved(engine):
+def test_a_thousand_mechanisms_are_within_the_claim_and_few_are_unresolved(engine):
     answers = claims(engine, 601, ALL_KINDS, 1000)
     assert all(
         answer[name][0] <= answer[name][1]
@@ -176,7 +176,12 @@ def test_a_thousand_mechanisms_are_so_and_at_most_two_in_a_hundred_right_ones_ar
 
 @dataclass(frozen=True)
 class DifficultCase:
-    """A difficult mechanism: its error is below `error`, or below an estimate, at most `factor` times too large."""
+    """A random mechanism and the limits of its error and estimate.
+
+    error: limit of the error of a resolved motion
+    unresolved: whether the motion is unresolved, with an estimate above the error
+    factor: largest ratio of that estimate to the error
+    """
 
     engine: Engine
     seed: int
@@ -186,26 +191,26 @@ class DifficultCase:
     error: float = CLAIM
     unresolved: bool = False
     factor: float = math.inf
-    lasts: float = 0.01  # s
+    lasts: float = 0.01  # duration [s]
 
 
 KNOWN = {
-    # A torsion spring with a time scale of 16 ms.
+    # The time scale of its torsion spring is 16 ms.
     "a stiff spring": DifficultCase(mujoco.EXTENDED, 3, 134, ALL_KINDS, unresolved=True),
-    # A damper stops a rod within three steps, so that double and half steps differ by 4 to 1, and not by 16 to 1.
+    # A damper stops a rod within three steps, so that the error falls by 4 and not by 16 if the step is halved.
     "no order is seen": DifficultCase(mujoco.EXTENDED, 31, 49, ALL_KINDS, 1e-2, unresolved=True, factor=3),
-    # 1.05e-7 off after the first step, where the estimate was 6.7e-8, and 2e-9 after the next.
+    # After the first step the error was 1.05e-7 and the estimate 6.7e-8. After the second step the error was 2e-9.
     "the first step alone": DifficultCase(bullet.EXTENDED, 7001, 245, ALL_KINDS, 1e-2, unresolved=True),
-    # 5 kg slide in a body of 0.1 kg, and a drive spans both: rows as hard as usual lose 4e-4 rad.
+    # 5 kg slide in a body of 0.1 kg, and a drive acts on both. Rows of the usual stiffness have an error of 4e-4 rad.
     "a light body carries a heavy one": DifficultCase(mujoco.EXTENDED, 1, 130, error=1e-9),
-    # A slot on a crank runs along a rod: 3 rad/s become 20 within 0.2 s. Rates rise fivefold within 10 ms.
+    # A slot on a crank slides along a rod, so that the rates rise from 3 to 20 rad/s within 0.2 s.
     "becomes fast in pymunk": DifficultCase(pymunk.EXTENDED, 22, 358, unresolved=True, lasts=0.2),
     "becomes fast in MuJoCo": DifficultCase(mujoco.EXTENDED, 1, 479, unresolved=True, lasts=0.2),
 }
 
 
 @pytest.mark.parametrize("case", KNOWN.values(), ids=KNOWN.keys())
-def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: DifficultCase) -> None:
+def test_difficult_mechanisms_are_within_the_claim_or_unresolved(case: DifficultCase) -> None:
     linkage = mechanism(case.seed, case.number, case.kinds)
     samples = max(1, round(case.lasts / case.step))
     run = installed(case.engine).build(linkage, case.step)(samples, 1)
@@ -223,7 +228,7 @@ def test_mechanisms_that_were_difficult_are_right_or_unresolved(case: DifficultC
 
 
 @pytest.mark.parametrize("number", [738, 1107], ids=["skate", "rod"])
-def test_reactions_of_exudyn_are_within_the_claim_though_their_error_alternates_with_the_step(number: int) -> None:
+def test_reactions_of_exudyn_are_within_the_claim(number: int) -> None:
     """Levels of different parity hid an error of 1.1e-3 and 3.6e-3 of the largest force from the estimate."""
     answer = errors(installed(exudyn.EXTENDED), mechanism(601, number, ALL_KINDS), number)
     assert isinstance(answer, dict)
@@ -240,12 +245,12 @@ def test_the_sampling_changes_neither_motion_nor_estimate_nor_outcome(number: in
             assert np.array_equal(getattr(seldom, name), getattr(frequent, name)[::every]), (name, every)
         assert (seldom.warnings, seldom.unresolved_at) == (frequent.warnings, frequent.unresolved_at)
     assert (frequent.unresolved_at is None) == (number == 120)
-    if number == 120:  # after one step no less than after two, but for rounding
+    if number == 120:  # its estimates after one and two steps are equal to rounding
         estimate = present(frequent.estimate)
         assert np.all(estimate[1] >= (1 - 1e-3) * estimate[2])
 
 
-def test_rows_that_rounding_would_spoil_are_softer_and_a_softness_that_is_asked_for_is_kept() -> None:
+def test_rows_with_large_rounding_are_regularised_more_unless_it_is_set() -> None:
     linkage = mechanism(1, 130, HELD)
     model = mujoco.EXTENDED.model(linkage, STEP)
     assert _remaining_error(model.compiled, model.start()) < 0.1
@@ -268,14 +273,14 @@ DRAWN = {
     "rapier": ("pin", "drive", "weld"),
     "drake": ("pin", "weld", *ELEMENTS),
 }
-# Largest error relative to the displacement, by order, after 180 steps in a fifth of the time scale: measured with a
-# margin. Box2D's compliant joints have SOFT, the largest of thirty draws; a wrong lever arm or sign has an error of 1.
+# Largest error relative to the displacement, by order, after 180 steps in a fifth of the time scale. The values are
+# measured, with a margin. Those of Box2D's soft joints are SOFT. The error of a wrong lever arm or sign is 1.
 JUDGED = {1: 2e-2, 2: 1e-5, 4: 1e-9}
 SOFT = 0.3
 
 
 @pytest.mark.parametrize("engine", QUICKLY, ids=method_name)
-def test_random_mechanisms_move_in_extras_as_the_judge_moves_them(engine):
+def test_extras_agree_with_the_judge_in_random_mechanisms(engine):
     built = 0
     for number in range(40):
         linkage = mechanism(12, number, kinds=DRAWN[installed(engine).name])

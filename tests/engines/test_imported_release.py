@@ -1,4 +1,4 @@
-"""The release of imported code beside that of its metadata: files laid over, builds, and modules that say anything."""
+"""Comparison of the release of imported code with its metadata: overwritten files, builds and modules."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ def answer(monkeypatch):
 
 
 @pytest.mark.parametrize("says", ["2.0.1.dev3", "1999", None])
-def test_a_module_whose_files_are_as_installed_may_call_itself_anything(tmp_path, answer, says):
+def test_a_module_with_unchanged_files_may_have_any_version(tmp_path, answer, says):
     distribution(tmp_path, NAME, "2.0.1", says)
     assert answer(tmp_path) == ""
 
 
-def test_a_build_is_of_its_release_and_what_adds_to_anothers_package_has_a_version_of_its_own(tmp_path, answer):
-    """As mujoco-mjx, installed without its requirements, adds mujoco/mjx to mujoco-core's package."""
+def test_builds_and_additions_to_another_package_are_accepted(tmp_path, answer):
+    # For example, mujoco-mjx adds mujoco/mjx to the package of mujoco-core.
     distribution(tmp_path, NAME, "1.17.0", "2.0.1", listed="more/__init__.py")
     distribution(tmp_path, "core", "2.0.1+patched", "2.0.1")
     (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # as the author changed it since
@@ -91,7 +91,7 @@ def test_a_folder_on_the_path_that_hides_an_installation_is_reported_unless_it_i
 
 @pytest.fixture
 def overlaid(monkeypatch):
-    """As with the files of mujoco 3.17.0 over those of mujoco-core."""
+    """A release whose files are overwritten, such as those of mujoco-core by mujoco 3.17.0."""
     imported_release._difference_of.cache_clear()
     monkeypatch.setattr(mujoco, "__version__", "3.17.0")
     monkeypatch.setattr(imported_release, "_is_changed", lambda file: True)
@@ -115,7 +115,7 @@ def test_no_command_runs_another_release_than_it_names(here, capfd):  # noqa: F8
 
 
 @pytest.mark.usefixtures("overlaid")
-def test_neither_does_a_notebook_or_a_test():
+def test_no_notebook_or_test_runs_another_release_than_it_names():
     default = next(engine for engine in registry.VARIANTS if engine.name == "mujoco")
     model = mujoco.MjModel.from_xml_string("<mujoco/>")  # pyright: ignore[reportAttributeAccessIssue]
     for function, argument in ((planar_crosscheck.check, model), (planar_crosscheck.conform, default)):

@@ -73,13 +73,13 @@ def placed(name: str, mass: float, inertia: float, centre: Any, angle: float, ve
 
 
 def far_drive() -> Mechanism:
-    """A four-bar whose coupler is driven against the ground, over two coordinates of a tree."""
+    """A four-bar with a drive between ground and coupler, which acts on two coordinates of a tree."""
     linkage = four_bar(crank_rate=10.0)
     return replace(linkage, joints=(*linkage.joints, Drive("far", None, "coupler", -5.0, linkage.bodies[1].pose[2])))
 
 
 def blade_on_a_board() -> Mechanism:
-    """A blade that runs on a board which is itself free: nothing holds them but the row."""
+    """A skate on a free board, without any other joint."""
     touch, ahead, rate = np.array([0.5, 0.0]), turned(0.4, 1.0, 0.0), 2.0
     velocity = [0.1, 0.0] + 0.5 * across(touch) + ahead + 0.5 * rate * across(ahead)
     sleigh = placed("sleigh", 2.0, 0.3, touch + 0.5 * ahead, 0.4, velocity, rate)
@@ -95,7 +95,7 @@ def rod_in_a_slot() -> Mechanism:
 
 
 def plate() -> Mechanism:
-    """It turns about the ground's point (0.3, 0.1), which slides in it, pulled by gravity."""
+    """A plate under gravity with a slot along which the ground's point (0.3, 0.1) slides."""
     angle, rate, line, linkage = 0.5, 2.0, 0.7, (0.25, -0.1)
     offset = turned(angle, *linkage)
     velocity = 0.4 * turned(angle + line, 1.0, 0.0) - rate * across(offset)
@@ -112,10 +112,12 @@ TRAMMEL, BEAD = (
 
 @dataclass(frozen=True)
 class Row:
-    """At `every` steps a sample: errors below these, and with four times as many smaller by 4 to `order`.
+    """The limits of the errors of a construction, and their orders.
 
-    Poses and twists in m, rad and s, reactions in the largest one or 1 N, of samples from `since` on. `floor`: no
-    step brings poses below it. Orders are within `room`, of (pose, twist, reaction) or of the pose.
+    pose, twist, reaction: limits with `every` steps for a sample, from the sample `since` on, in m, rad and s, and
+        relative to the largest reaction, which is at least 1 N
+    order: orders of pose, twist and reaction, by four times as many steps, to within `room`
+    floor: the least error of poses at any step
     """
 
     engine: Engine
@@ -127,7 +129,7 @@ class Row:
     order: tuple[float | None, ...] = ()
     room: float = 0.15
     floor: float = 0.0
-    span: float = 0.5  # s
+    span: float = 0.5  # duration [s]
     since: int = 0
 
     def __str__(self) -> str:
@@ -149,48 +151,48 @@ CHAINS = (PointPendulum(), TenLinks(), NFourBar(), TenFourBars(), TwoFeet(), SLI
 OF_PYMUNK = (
     # The bias as shipped leaves a gap of the order of dt; at these steps the next order still shows in the motion.
     Row(pymunk.DEFAULT, FREE, order=(1,), room=0.25),
-    # From rest the tuned motion is late by half a step, and its velocities are read early by the same.
+    # From rest the tuned motion has a delay of half a step, and velocities are recorded half a step early.
     Row(pymunk.TUNED, FREE, 25, pose=8e-3, order=(1, 2, 1)),
     Row(pymunk.LEAPFROG, FREE, order=(2, 2, 2)),
-    # Truncation h^6 with h = 1/2000 s and rates of 10/s is 1e-12 and below; rounding of 8000 steps a second the same. A
-    # force is a difference of velocities over a step of 1e-4 s: rounding grows by 1e4.
+    # The discretisation error and the rounding of 8000 steps are each below 1e-12. A force is a change of velocity over
+    # a step of 1e-4 s, so that its rounding is 1e4 times larger.
     *on(pymunk.EXTENDED, (FREE, DRIVEN, MOVING), pose=1e-11, twist=1e-9, reaction=1e-8),
-    # The first samples have the error of the first steps, which is no series in the step.
+    # The first samples have the error of the first steps, which has no expansion in the step.
     *on(pymunk.EXTENDED, ROLLING, 3, pose=1e-11, reaction=1e-8, since=2),
     *on(methods.ROLL_PIVOT, ROLLING[:2], order=(2,), room=0.2),
-    # 3e-11 here; 7e-10 if the contact is foreseen as on a ground that rests.
+    # The error is 3e-11, or 7e-10 if the contact is predicted for a ground at rest.
     Row(pymunk.EXTENDED, EllipticGears(), pose=1e-10, span=2.0),
     Row(methods.SKATE_PROJECTED, SLEIGH, order=(1,), span=3.0),
     Row(methods.SKATE_GROOVE, SLEIGH, order=(1,), span=3.0),
     *on(pymunk.EXTENDED, SLEIGHS, 1, pose=1e-11, reaction=1e-8, span=3.0),
-    # Were the powers of the error others, five levels would leave 1e-5 and more.
+    # With other powers of the step, the error with five levels would be at least 1e-5.
     Row(replace(methods.SKATE_GROOVE_EXTRAPOLATED, powers=(2, 3, 4, 5)), SLEIGH, 1, floor=1e-7, span=3.0),
-    # The first force is extrapolated from the steps after it, on top of the extrapolation in the step.
+    # The first force is extrapolated in time from later steps, in addition to the extrapolation in the step.
     Row(pymunk.EXTENDED, CarAndTrailer(), 1, pose=1e-10, twist=1e-8, reaction=1e-4, since=1, span=5.0),
     Row(pymunk.EXTENDED, blade_on_a_board(), 1, pose=1e-9),
-    Row(methods.SKATE_CENTRE, SLEIGH, floor=1.0, span=3.0),  # another motion unless the skate is there: a circle
+    Row(methods.SKATE_CENTRE, SLEIGH, floor=1.0, span=3.0),  # without the effect of the skate
     Row(methods.SKATE_CENTRE, ChaplyginSleigh(offset=0.0), 10, pose=2e-2, order=(1,), span=3.0),
-    Row(methods.SKATE_POINT, SLEIGH, floor=1.0, span=3.0),  # though it does not slip
+    Row(methods.SKATE_POINT, SLEIGH, floor=1.0, span=3.0),  # although it does not slip
     Row(pymunk.EXTENDED, SLIDER, pose=1e-11, twist=1e-9, reaction=1e-7),
-    # cpGrooveJoint solves both directions and keeps one: right only where the normal is an axis of the mass.
+    # cpGrooveJoint solves both directions and uses one, which is correct only if the normal is a principal axis.
     Row(replace(pymunk.DEFAULT, slot="groove"), rod_in_a_slot(), 1, floor=0.1),
     Row(pymunk.LEAPFROG, rod_in_a_slot(), order=(2,)),
     Row(pymunk.EXTENDED, rod_in_a_slot(), pose=1e-10, reaction=1e-6),
     *on(pymunk.EXTENDED, (BEAD, TRAMMEL), 5, pose=1e-9, reaction=1e-5),
     Row(pymunk.EXTENDED, LinkPendulum(), 5, pose=6e-12, reaction=1e-6, span=1.0),
-    # Heavy bodies on light ones hold together by the same rule; by a fixed number of sweeps they would not.
+    # Heavy bodies on light bodies need more iterations, which the same rule provides.
     Row(pymunk.LEAPFROG, OneFoot(), 3, pose=1e-3),
     Row(pymunk.Pymunk("five sweeps", iterations=5, error_bias=0.0, leapfrog=True), OneFoot(), floor=0.1),
 )
 OF_MUJOCO = (
-    # The shipped time constant of 0.02 s and impedance of 0.9 are a soft loop at any step: a plateau.
+    # With the shipped time constant of 0.02 s and impedance of 0.9 the error does not depend on the step.
     Row(mujoco.DEFAULT, FREE, 25, order=(0,), room=0.5, floor=1e-4),
-    # With a time constant of five steps the softness falls as dt^2.
+    # With a time constant of five steps the regularisation falls as dt^2.
     Row(mujoco.TUNED, FREE, pose=1e-6, order=(2,), room=0.5),
-    # An overwritten crank: the solver believes that it is free to accelerate, which a stiff loop alone makes up for.
+    # The rate of the crank is overwritten, but the solver treats the crank as free. Only a stiff loop corrects this.
     Row(OVERWRITTEN, DRIVEN, 25, order=(0,), room=0.1),
     Row(replace(OVERWRITTEN, stiffness=mujoco.TUNED.stiffness), DRIVEN, 25, order=(2,)),
-    # 1e-2 s: five steps are longer than the motion's own time constant, and order 4 leaves about 1e-5.
+    # At steps of 1e-2 s five steps are longer than the time constant of the motion, and the error at order 4 is 1e-5.
     *on(mujoco.EXTENDED, (FREE, DRIVEN), 1, pose=1e-4, span=0.05),
     Row(mujoco.EXTENDED, FREE, 5, order=(4,), room=0.5),
     *on(mujoco.EXTENDED, (FREE, DRIVEN), 10, pose=1e-8, reaction=1e-6),
@@ -198,30 +200,30 @@ OF_MUJOCO = (
     Row(mujoco.EXTENDED, far_drive(), pose=1e-7, reaction=1e-6, span=0.05),
     *on(mujoco.EXTENDED, (EllipticGears(),), pose=1e-8, reaction=1e-4, span=1.0),
     Row(mujoco.DEFAULT, RollingEllipse(), order=(0,), room=0.3, floor=0.02, span=2.0),
-    # The contact comes and goes, so that the error jitters by some tens of a percent.
+    # The contact is not permanent, so that the error varies by some tens of a percent.
     Row(mujoco.TUNED, RollingEllipse(), 25, order=(1,), room=0.3, span=2.0),
-    # A direction is a whole step late at most: the way on which it then leads off is the speed times the turning.
+    # The direction has a delay of at most a step. The error is the displacement times the rotation in a step.
     Row(mujoco.TUNED, SLEIGH, order=(1,), span=3.0, pose=2e-2, reaction=5e-3, since=1),
-    # The blade's friction along it is MuJoCo's least, 1e-5 of the weight.
+    # The friction along the blade is MuJoCo's least, 1e-5 of the weight.
     Row(BLADE, SLEIGH, 25, pose=5e-3, reaction=5e-3, since=1, floor=1e-4, span=3.0),
-    # Friction's time constant of 0.02 s is a slip of that times u w, and it doesn't know the step.
+    # The slip is the time constant of friction, 0.02 s, times u w. It does not depend on the step.
     Row(mujoco.DEFAULT, SLEIGH, order=(0,), floor=5e-3, pose=5e-2, reaction=0.1, since=10, span=3.0),
     Row(SOFT, SLEIGH, 5, order=(0,), floor=1e-6, span=3.0),
     Row(mujoco.EXTENDED, blade_on_a_board(), pose=1e-9),
     *on(mujoco.EXTENDED, (SLIDER,), 25, pose=1e-10, reaction=1e-8),
     Row(TUNED_FREE, SLIDER, pose=1e-4),
-    # The drive of the rod has the least compliance; in the tree the slot is no constraint.
+    # The drive of the rod has the least compliance. The slot is a coordinate of the tree.
     Row(mujoco.TUNED, BEAD, pose=1e-8, twist=1e-7, reaction=1e-7, span=0.2),
     Row(FREE_HALVES, BEAD, pose=1e-9, reaction=1e-7, span=0.2),
-    Row(TUNED_FREE, BEAD, pose=1e-6, order=(2,), room=0.3, span=0.2),  # a gap of the weld and of the slot
+    Row(TUNED_FREE, BEAD, pose=1e-6, order=(2,), room=0.3, span=0.2),  # the weld and the slot have gaps
     *on(mujoco.TUNED, (TRAMMEL,), pose=1e-6, span=0.2),
     *on(HALVES, (TRAMMEL,), pose=1e-9, span=0.2),
     Row(HALVES, plate(), pose=1e-8, reaction=1e-2, span=0.2),
     *on(mujoco.EXTENDED, (TRAMMEL, plate()), pose=1e-8, reaction=1e-2, span=0.2),
-    *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # the spring is tied to the step, as that of the weld
-    # Flat at about 0.7 s: the rows lose rank there, and rounding replaces the missing ones.
+    *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # its spring depends on the step, as that of the weld
+    # The linkage is flat at about 0.7 s, where the rows are dependent.
     Row(mujoco.EXTENDED, NFourBar(), pose=1e-6, span=1.5),
-    # Ten milliseconds: first order errs by about a dt^2 / 2 per step, and the shipped loops by their softness.
+    # At 10 ms the error at order 1 is a dt^2 / 2 for each step, and that of shipped loops is their regularisation.
     *on(mujoco.DEFAULT, CHAINS, pose=5e-3, span=0.01),
     *on(FREE_COORDINATES, CHAINS, pose=1e-5, span=0.01),
 )
@@ -247,7 +249,7 @@ def errors(row: Row, every: int) -> list[float]:
 
 
 @pytest.mark.parametrize("row", [*OF_PYMUNK, *OF_MUJOCO], ids=str)
-def test_a_construction_reaches_what_the_table_says_and_no_more(row: Row) -> None:
+def test_a_construction_has_the_errors_and_orders_of_the_table(row: Row) -> None:
     coarse_errors = errors(row, row.every)
     for off, allowed in zip(coarse_errors, (row.pose, row.twist, row.reaction), strict=True):
         assert off < allowed
@@ -285,7 +287,7 @@ REFUSED = (
         for engine in (methods.SKATE_CENTRE, methods.SKATE_PROJECTED)
     ),
     *((engine, blade_on_a_board(), "runs on the body 'board'") for engine in (mujoco.DEFAULT, BLADE)),
-    # A crank, and a body that can only turn as driven.
+    # A crank, and a body whose only motion is that of a drive.
     *(
         (pymunk.TUNED, twice_driven(*pins), "'second' joins two bodies whose motion is already")
         for pins in ((HUB,), ())
@@ -300,6 +302,6 @@ REFUSED = (
 
 
 @pytest.mark.parametrize(("engine", "subject", "sentence"), REFUSED, ids=lambda value: getattr(value, "variant", None))
-def test_what_a_construction_can_not_do_is_refused_in_a_sentence(engine, subject, sentence) -> None:
+def test_limits_of_constructions_are_refused_in_a_sentence(engine, subject, sentence) -> None:
     with pytest.raises(Unsupported, match=sentence):
         engine.build(subject if isinstance(subject, Mechanism) else subject.mechanism(), 1e-3)

@@ -1,4 +1,4 @@
-"""Scenes and engines without registration: of a module, of a file, with other parameters, and invalid ones."""
+"""Scenes and engines that are not registered: from modules and files, with other parameters, and invalid names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from reports.model.ending import FINE, REFUSED
 from tests.reports.test_command_line import call, one_line
 from tests.toys import Toy
 
-# Files as a user writes them: a scene and an engine that inherit from classes of this project.
+# Files of a user: a scene and an engine that inherit from classes of this project.
 FALLING = """
 from dataclasses import dataclass
 from typing import ClassVar
@@ -66,7 +66,7 @@ def methods(engines):
     return [method_name(engine) for engine in engines]
 
 
-def test_an_engine_is_found_by_its_module_and_by_its_file_alone_and_in_a_list(here):
+def test_an_engine_is_found_by_module_by_file_and_in_a_list(here):
     written(here, "mine_1.py", FALLING)
     written(here, "package/__init__.py", "")
     written(here, "package/mine_2.py", FALLING + "ONE = ENGINES[0]")
@@ -108,7 +108,7 @@ def test_a_name_that_can_not_be_printed_in_a_table_is_no_engines_name(word):
         ("", "json.py", "another module is called 'json'"),
     ],
 )
-def test_what_is_no_engine_is_one_sentence_with_its_place(here, text, reference, telling):
+def test_the_message_for_an_invalid_engine_has_its_place(here, text, reference, telling):
     written(here, "broken.py", text)
     written(here, "json.py", FALLING)
     with pytest.raises(ValueError, match=r"\w") as refused:
@@ -118,7 +118,7 @@ def test_what_is_no_engine_is_one_sentence_with_its_place(here, text, reference,
 
 
 def test_a_file_gives_all_scenes_of_its_top_level_once(here):
-    # A class without an instance in the file is a scene with its default values; imported names are no scenes.
+    # A class without an instance in the file is a scene with its default values. Imported names are not scenes.
     path = written(
         here, "several.py", FALLING + "\nclass Other(Falling):\n    name = 'other'\n\nSHORT = Other(length=0.5)"
     )
@@ -128,14 +128,14 @@ def test_a_file_gives_all_scenes_of_its_top_level_once(here):
     ]
 
 
-def test_numbers_are_set_by_name_and_called_in_the_order_of_the_fields():
+def test_parameters_are_set_by_name_and_listed_in_the_order_of_the_fields():
     changed = with_settings(scene("free_four_bar"), {"rate": "3", "crank": "0.45", "gravity": "(0, -1.5)"})
     other = with_settings(scene("free_four_bar"), {"gravity": "[0, -1.5]", "crank": "4.5e-1", "rate": "3.0"})
     assert changed == other == FreeFourBar(crank=0.45, rate=3.0, gravity=(0.0, -1.5))
     assert changed.name == other.name == "free_four_bar crank=0.45 rate=3 gravity=(0,-1.5)"
     assert FreeFourBar.name == scene("free_four_bar").name == "free_four_bar"
     assert with_settings(scene("car_and_trailer"), {"redundant": "True"}).name == "car_and_trailer redundant=True"
-    unchanged = scene("free_four_bar")  # a value that it has already
+    unchanged = scene("free_four_bar")
     assert with_settings(unchanged, {"crank": "0.4"}) is unchanged
 
 
@@ -150,7 +150,7 @@ def test_numbers_are_set_by_name_and_called_in_the_order_of_the_fields():
         ("crank", "50", "can't be assembled"),
     ],
 )
-def test_a_number_that_can_not_be_is_a_sentence(name, text, telling):
+def test_an_invalid_parameter_is_refused_in_one_sentence(name, text, telling):
     with pytest.raises(ValueError, match=r"\w") as refused:
         with_settings(scene("free_four_bar"), {name: text})
     assert telling in str(refused.value)
@@ -162,7 +162,7 @@ PAGE_OF_IT = "pendulum_1_length_0.5_rate_2"
 
 @pytest.fixture
 def no_pages(monkeypatch):
-    """No pages, since this test is not about rendering."""
+    """Replace the pages by none, since rendering is not tested here."""
     monkeypatch.setattr(catalogue, "PAGES", ())
 
 
@@ -197,7 +197,7 @@ def test_a_scene_and_an_engine_of_a_file_are_run_and_reported_until_the_file_is_
     assert capfd.readouterr().err == ""
     assert "| mine rk4 projection |" in (here / "crosscheck-results" / "falling.md").read_text(encoding="utf-8")
     path.unlink()
-    assert call("report") == REFUSED  # nothing else is stored
+    assert call("report") == REFUSED  # there are no other results
     lines = capfd.readouterr().err.splitlines()
     assert [line.startswith("crosscheck: left out, since it is not as it was") for line in lines] == [True, True, False]
     assert "mine_3.py: there is no such file" in lines[0]
@@ -214,7 +214,7 @@ def test_a_scene_and_an_engine_of_a_file_are_run_and_reported_until_the_file_is_
         (("taken.py",), "another scene is called 'pendulum_1'; give this one another name"),
     ],
 )
-def test_words_that_name_nothing_are_one_line(here, words, telling, capfd):
+def test_unknown_names_are_refused_in_one_line(here, words, telling, capfd):
     written(here, "taken.py", FALLING.replace('"falling"', '"pendulum_1"'))
     assert call("run", *words) == REFUSED
     assert telling in one_line(capfd.readouterr().err)
@@ -254,7 +254,7 @@ def test_an_entry_point_that_can_not_be_used_is_one_line_and_the_others_stay(her
     assert telling in line
 
 
-def test_a_run_into_a_file_says_now_and_then_how_far_it_is(monkeypatch, capsys):
+def test_a_run_into_a_file_prints_its_progress(monkeypatch, capsys):
     now = [100.0]
     monkeypatch.setattr("reports.cli.terminal.monotonic", lambda: now[0])
     checked = []

@@ -1,7 +1,6 @@
-"""Engines that are extras: properties of single engines, files and output that they leave, messages for missing ones.
+"""Engines that are extras: properties of single engines, their files and output, and messages for missing packages.
 
-`test_promised` tests orders, elements and configurations of all, `test_claims` random mechanisms. A
-model of MJX takes tens of seconds to compile, so its tests are slow ones.
+`test_promised` tests orders, elements and configurations of all engines. `test_claims` tests random mechanisms.
 """
 
 from __future__ import annotations
@@ -57,15 +56,15 @@ def test_a_run_prints_nothing_and_leaves_no_file(name, capfd, tmp_path, monkeypa
     assert capfd.readouterr() == ("", "")
 
 
-def test_single_precision_rounds_the_start_of_box2d_and_nothing_worse():
-    """The engine's own angle of a body is off by up to 3e-5 rad, at other angles than those of the axes."""
+def test_the_start_of_box2d_is_the_mechanisms_to_single_precision():
+    # The engine's function for the angle of a body has an error of up to 3e-5 rad.
     described = scene("free_four_bar").mechanism()
     run = shipped("box2d").build(described, 1e-6)(2, 1)
     assert np.abs(run.pose[1] - described.pose).max() < 1e-5
 
 
-def test_a_rod_shorter_than_box2ds_slop_is_refused_since_it_would_be_longer():
-    """Found by the search: the same mechanism in millimetres blew up. The joint of the engine returns its length."""
+def test_a_rod_shorter_than_box2ds_slop_is_refused():
+    # The random search found that a mechanism diverged in millimetres.
     engine = shipped("box2d")
     import pyb2d3
 
@@ -79,8 +78,8 @@ def test_a_rod_shorter_than_box2ds_slop_is_refused_since_it_would_be_longer():
 
 
 @pytest.mark.parametrize(("speed", "rate", "told"), [(1e7, 78.0, False), (0.0, 79.0, True)])
-def test_box2d_slows_no_body_down_but_one_that_turns_by_more_than_an_eighth_of_a_turn_in_a_step(speed, rate, told):
-    """That is 78.5 rad/s. Found by the search: speeds above 1e6 m/s were cut by our own limit."""
+def test_box2d_reduces_only_rates_above_an_eighth_of_a_turn_in_a_step(speed, rate, told):
+    # An eighth of a turn in a step is 78.5 rad/s. The random search found that our limit reduced speeds above 1e6 m/s.
     body = Body("free", 1.0, 1.0, (0.0, 0.0, 0.0), (speed, 0.0, rate))
     run = shipped("box2d").build(Mechanism((body,), ()), 1e-2)(3, 1)
     assert run.twist[-1, 0, 0] == pytest.approx(speed, rel=1e-6)
@@ -89,7 +88,7 @@ def test_box2d_slows_no_body_down_but_one_that_turns_by_more_than_an_eighth_of_a
 
 
 @pytest.mark.parametrize("sample", [1, 2])
-def test_an_engine_without_finite_numbers_reports_when(sample):
+def test_the_warning_of_a_diverged_run_has_its_time(sample):
     states = np.zeros((3, 1, 3))
     states[sample, 0, 0] = np.nan
     body = Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), ())
@@ -99,7 +98,7 @@ def test_an_engine_without_finite_numbers_reports_when(sample):
     np.testing.assert_array_equal(np.isnan(run.pose).all(axis=(1, 2)), np.arange(3) >= sample)
 
 
-def test_differences_of_a_run_that_ends_early_have_the_shape_of_its_samples():
+def test_accelerations_of_a_run_that_ends_early_have_the_shape_of_its_samples():
     for lost_after in range(1, 6):
         steps = 0
 
@@ -115,7 +114,7 @@ def test_differences_of_a_run_that_ends_early_have_the_shape_of_its_samples():
 
 
 def test_exudyns_reactions_need_consistent_accelerations_at_the_start():
-    """As shipped the trapezoidal rule keeps a wrong acceleration of the start for good; see engines/exudyn."""
+    # As shipped the trapezoidal rule never reduces the error of the acceleration at the start; see engines/exudyn.
     from engines.exudyn import TUNED
 
     shipped("exudyn")
@@ -131,7 +130,7 @@ def test_exudyns_reactions_need_consistent_accelerations_at_the_start():
 
 
 def test_exudyns_motion_does_not_depend_on_units():
-    """It takes no step below 1e-8 s, and rounds sample times to 1e-10 s: as shipped it returned another pose."""
+    # Exudyn takes no step below 1e-8 s and rounds sample times to 1e-10 s, which changed the pose as shipped.
     from engines.exudyn import TUNED
 
     shipped("exudyn")
@@ -144,8 +143,8 @@ def test_exudyns_motion_does_not_depend_on_units():
         assert np.array_equal(run.twist / time, right.twist)
 
 
-def test_exudyn_moves_a_light_body_as_exactly_as_a_heavy_one():
-    """A body of 2e-11 kg m^2 on one of 0.8: it was off by 6e-7 of the motion, as its forces were below 1e-14 of all."""
+def test_exudyns_error_does_not_depend_on_the_mass_ratio():
+    # A body of 2e-11 kg m^2 on one of 0.8 kg m^2 had an error of 6e-7, since its forces were below the tolerance.
     from engines.exudyn import EXTENDED
 
     shipped("exudyn")
@@ -156,8 +155,8 @@ def test_exudyn_moves_a_light_body_as_exactly_as_a_heavy_one():
     assert error <= bound < 1e-7
 
 
-def test_a_motor_of_bullet_has_no_limit_of_torque():
-    """As a force of 1e10 N m it let a rate of 25 rad/s slip by a third where masses are of a million tonnes."""
+def test_the_torque_of_a_motor_of_bullet_is_not_limited():
+    # With a limit of 1e10 N m a rate of 25 rad/s had an error of a third for masses of a million tonnes.
     from engines.bullet import DEFAULT
 
     shipped("bullet")
@@ -169,18 +168,18 @@ def test_a_motor_of_bullet_has_no_limit_of_torque():
     assert np.abs(run.pose[:, 0, 2] - 25.0 * run.t).max() < 1e-12
 
 
-def test_a_disc_rolls_on_a_line_in_a_body_that_moves_in_exudyn_too():
-    """Found by the search: the engine takes no plane that is away from the body's centre of mass, and raised."""
+def test_a_disc_rolls_on_a_moving_body_in_exudyn():
+    # The random search found that the engine refuses a plane whose origin is not at the body's centre of mass.
     engine = next(engine for engine in QUICKLY if (engine.name, engine.variant) == ("exudyn", "tuned"))
     linkage = mechanism(5, 3, ("pin", "roll"))
     assert any(isinstance(joint, Roll) and joint.first and any(joint.first_point) for joint in linkage.joints)
     spacing = 0.01 * linkage.time_scale
     pose, truth = (method.build(linkage, spacing)(20, 1).pose for method in (installed(engine), TRUTH))
-    # Of second order: (a step / the time scale)^2.
+    # The error at order 2 is (step / time scale)^2.
     assert np.abs(pose - truth).max() < 1e-3 * np.abs(truth - truth[0]).max()
 
 
-def test_an_engine_whose_package_is_missing_names_the_extra(monkeypatch):
+def test_the_message_for_a_missing_package_names_the_extra(monkeypatch):
     monkeypatch.setattr(single_run, "_is_found", lambda module: False)
     monkeypatch.setattr(shutil, "which", lambda program: None)
     for engine in registry.OTHERS:
@@ -198,8 +197,8 @@ def test_an_engine_whose_package_is_missing_names_the_extra(monkeypatch):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the library is one of Linux")
-def test_an_engine_whose_shared_library_is_missing_names_it(monkeypatch):
-    """As on a small Debian, where Exudyn is installed and can't be imported."""
+def test_the_message_for_a_missing_shared_library_names_it(monkeypatch):
+    # On a small Debian system Exudyn can be installed, but not imported.
     monkeypatch.setattr(single_run, "_is_loaded", lambda library: False)
     engine = shipped("box2d")  # which needs none
     assert not engine.missing
@@ -230,7 +229,7 @@ def test_samples_after_exudyn_has_stopped_are_nan():
     is_finite = np.all(np.isfinite(run.pose), axis=(1, 2))
     count = int(is_finite.sum())
     assert is_finite[:count].all()
-    # The last sample that the engine wrote before is left out too.
+    # The last sample that the engine wrote is not used either.
     assert 20 < count < np.ceil(overdriven.stopping_time / 1e-2)
     assert np.abs(linkage.gap(run.pose[:count], run.t[:count])).max() < 1e-6
 
@@ -269,7 +268,7 @@ def with_mjx() -> None:
 
 @pytest.fixture(autouse=True)
 def _programs_forgotten():
-    """After each test: JAX ends a process that has compiled some hundreds of programs by a segmentation fault."""
+    """Clear the compiled programs after each test, since JAX crashes after some hundreds of them."""
     yield
     if "jax" in sys.modules:
         sys.modules["jax"].clear_caches()
@@ -302,8 +301,7 @@ def test_a_missing_device_is_refused_in_one_line():
 
 
 def geared(arm: float, light: float, wheel: float, gravity: tuple[float, float]) -> Mechanism:
-    """A pendulum of 2 g and `light` kg m^2, geared to the wheel of a free body of 20 t; of random search, seed
-    1189519295."""
+    """A pendulum of 2 g and `light` kg m^2 with a gear to a wheel on a free body of 20 t, from the random search."""
     bodies = Body("pendulum", 2e-3, light, (0.0, 0.0, 0.0)), Body("free", 2e4, wheel, (0.0, 0.0, 0.0))
     pin = Pin("pin", None, "pendulum", (arm, -arm), (arm, -arm))
     return Mechanism(bodies, (pin, Gear("gear", "pendulum", "free", 2.0, 0.0)), gravity=gravity)
@@ -312,7 +310,7 @@ def geared(arm: float, light: float, wheel: float, gravity: tuple[float, float])
 @pytest.mark.slow
 @pytest.mark.usefixtures("with_mjx")
 def test_a_residual_of_the_solver_is_a_warning():
-    """As shipped, 1e-8 of all inertias: more than all that a wheel of 1e-6 kg m^2 beside 500 kg m^2 costs."""
+    # As shipped the tolerance is relative to all inertias: a wheel of 1e-6 kg m^2 beside 500 kg m^2 has no effect.
     run = MJX.build(geared(500.0, 500.0, 1e-6, (-1e-3, 9e-4)), 12.0)(4, 10)
     assert [warning.startswith("ours: the solver missed the accelerations") for warning in run.warnings] == [True]
     mended = replace(MJX, settings=replace(MJX.settings, tolerance=1e-28))
@@ -321,11 +319,8 @@ def test_a_residual_of_the_solver_is_a_warning():
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("with_mjx")
-def test_forces_of_a_loop_are_those_of_its_declared_compliance_without_the_velocity_term():
-    """(A + R) f = b, with R from the compiled model (`efc_R`), and b with or without the term J-dot v.
-
-    The reactions agree with the law without the term to rounding and the tolerance of the solver.
-    """
+def test_forces_of_loops_follow_from_the_compliance_without_the_velocity_term():
+    # The law is (A + R) f = b with R of the compiled model (`efc_R`), and with the term J-dot v in b or without it.
     scene = BY_NAME["free_four_bar"]
     truth = scene.motion(np.linspace(0.2, 1.0, 4) * scene.duration)
     for pose, twist in zip(truth.pose, truth.twist, strict=True):
@@ -333,24 +328,22 @@ def test_forces_of_a_loop_are_those_of_its_declared_compliance_without_the_veloc
         soft = present(MJX_TUNED.regularisation(now, 1e-3))
         model = MJX_TUNED.settings.model(now, 1e-3)
         declared = np.zeros(now.row_count)
-        # A connect has a third row, out of the plane; in the model masses have a unit.
+        # A connect constraint has a third row, out of the plane. The model has a unit of mass.
         declared[np.flatnonzero(soft.rows)] = model.start().efc_R[:2] / model.unit
         run = MJX_TUNED.build(now, 1e-3)(1, 1).reaction[0]
         largest = np.abs(run).max()
         assert np.abs(run - reactions_with(now, soft.rows, False, declared)).max() < 1e-9 * largest
         assert np.abs(run - reactions_with(now, soft.rows, True, declared)).max() > 1e-3 * largest
-        # Without the compliance the law is missed by at most |R| / (the least eigenvalue of A) of the force itself.
+        # Without R the relative error of the law is at most |R| / (the least eigenvalue of A).
         weight = 1 / now.inertias.reshape(-1)
         rows = now.rows(now.pose)
-        effective_mass = np.linalg.inv((rows * weight) @ rows.T)[
-            np.ix_(soft.rows, soft.rows)
-        ]  # of the loop, the others held
+        effective_mass = np.linalg.inv((rows * weight) @ rows.T)[np.ix_(soft.rows, soft.rows)]
         bound = declared.max() * np.linalg.eigvalsh(effective_mass).max()
         assert bound < 1e-3
         assert np.abs(run - reactions_with(now, soft.rows, False)).max() < bound * largest
 
 
-# An element for each kind of construction in the model (tendons, actuators, equalities), and a tree.
+# One element for each construction in the model (tendons, actuators, equalities), and a tree.
 COMPILED = ("spring", "torsion spring", "force", "gear", "rod", "weld", "pendulum_2")
 
 
@@ -364,6 +357,6 @@ def test_elements_move_as_in_mujoco(name):
         first, second = (method.build(mechanism, 2e-3)(6, 25) for method in (engine, engine.settings))
         np.testing.assert_allclose(first.pose, second.pose, rtol=0, atol=1e-11)
         np.testing.assert_allclose(first.reaction, second.reaction, rtol=0, atol=1e-8)
-        # The gear hangs on a rod.
+        # The mechanism with the gear has a rod.
         assert first.warnings == ((NO_VELOCITY_TERM,) if name in ("rod", "gear") else ())
         assert np.abs(first.pose - exact.pose).max() < 1e-2

@@ -1,8 +1,6 @@
-"""Every engine against the judge: each element, joint and configuration moves with the promised order or is refused.
+"""Comparison of every engine with the judge: each element and configuration has the declared order or is refused.
 
-A joint or a force element that an adapter does not know is refused by name, never left out of the model.
-Tests of an engine that is not installed are skipped with the name of its extra. A model of MJX takes tens of
-seconds to compile, so its tests are slow ones, in tests/engines/test_other_engines.py.
+Tests of an engine that is not installed are skipped with the name of its extra. MJX is in test_other_engines.py.
 """
 
 from __future__ import annotations
@@ -59,14 +57,14 @@ AXLES = tuple(
 
 
 def meshed(ratio: float, first: str = "a", second: str = "b") -> Mechanism:
-    """Two wheels on the ground, out of centre, in mesh; a torque turns one of them."""
+    """Two eccentric wheels on the ground with a gear between them, and a torque on one of them."""
     angle = {"a": 0.3, "b": 0.5}
     gear = Gear("mesh", first, second, ratio, angle[second] - ratio * angle[first])
     return Mechanism(WHEELS, (*AXLES, gear), GRAVITY, (Torque("motor", None, "a", 1.7),))
 
 
-# Further configurations: a drive or a slot whose bodies have the other order than the joint beside it, an angle beyond
-# a turn, two forces on one body, a speed at which limits of an engine or its sleep could act.
+# Further configurations: the bodies of a drive or slot in the opposite order to another joint, an angle beyond a turn,
+# two forces on one body, and a speed at which limits or the sleep of an engine could act.
 CONFIGURATIONS = {
     "a drive against its pin": Mechanism(TWO, (*HUNG, Drive("motor", "second", "first", 2.0, 0.0)), GRAVITY),
     "a held angle against its slot": Mechanism(
@@ -95,14 +93,14 @@ CONFIGURATIONS = {
     ),
     "faster than any usual limit": Mechanism((block("shot", (0.0, 0.0, 0.0), (1000.0, 0.0, 0.0)),), ()),
     "too slow to stay awake": Mechanism((block("drifting", (0.0, 0.0, 0.0), (1e-3, 2e-3, 1e-3)),), ()),
-    # Free, driven, with a slider, and chains.
+    # Linkages that are free or driven or have a slider, and chains.
     **{name: scene(name).mechanism() for name in ("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10")},
     "weld that closes a loop": replace(
         ALONE["weld in a loop"], joints=tuple(joint for joint in ALONE["weld in a loop"].joints if joint.name != "weld")
     ),
 }
 MECHANISMS = {**ALONE, "all": ALL, "all damped": DAMPED, **CONFIGURATIONS}
-# What extras build, by engine, or by method where it builds less.
+# The elements that extras build, by engine, or by method if a method builds fewer.
 PINNED = {
     *("torsion spring", "torsion damper", "torque", "force", "weld", "weld to the ground", "two forces on a body")
 }
@@ -125,7 +123,8 @@ BUILDS = {
     "drake cenic": UNCONSTRAINED | GROUNDED_GEARS,
 }
 SAMPLES, SPACING = 6, 0.05
-# Newton's tolerance as shipped; a drive held by an inertia of 1e8 times the mechanism's; single precision; rounding.
+# The error that does not fall with the step, by engine: from the tolerance of the solver, an inertia of 1e8 times the
+# mechanism's for drives, or single precision.
 SMALL = {
     "exudyn": 1e-8,
     "box2d": 1e-4,
@@ -151,14 +150,14 @@ def exact(name: str) -> np.ndarray:
 
 
 def missed(engine: Engine, own: Mechanism, name: str, every: int) -> float:
-    """In lengths of the mechanism, and rad."""
+    """The largest error of a pose at the end, in rad and in lengths of the mechanism."""
     run = engine.build(own, span(name) / SAMPLES / every)(SAMPLES, every)
     assert run.reset_at is None
     return float((np.abs(run.pose - exact(name)) / own.pose_unit).max())
 
 
-# A loop of rows that repeat is no matter of the vocabulary: extras need not solve it. Every day each engine moves a
-# third of the mechanisms, and further variants of extras a ninth; each mechanism is moved by a third of the engines.
+# Extras need not solve loops with redundant rows. Daily tests run a third of the mechanisms in each engine, and a ninth
+# in further variants of extras.
 CELLS = [
     pytest.param(
         engine, name, marks=() if (place + number) % (9 if engine in FURTHER else 3) == 0 else pytest.mark.slow
@@ -175,7 +174,7 @@ def label(value: Engine | str) -> str:
 
 
 @pytest.mark.parametrize(("engine", "name"), CELLS, ids=label)
-def test_an_engine_moves_with_the_order_it_promises_or_refuses_by_name(engine: Engine, name: str) -> None:
+def test_an_engine_has_its_declared_order_or_refuses_the_element_by_name(engine: Engine, name: str) -> None:
     installed(engine)
     linkage = MECHANISMS[name]
     if name not in BUILDS.get(method_name(engine), BUILDS.get(engine.name, MECHANISMS)):
@@ -184,7 +183,7 @@ def test_an_engine_moves_with_the_order_it_promises_or_refuses_by_name(engine: E
             engine.build(linkage, 1e-3)
         assert any(element_name in str(refused.value) for element_name in named), str(refused.value)
         return
-    # At these steps an error of first order is far above one of second order, and one of fourth far above rounding.
+    # At these steps errors of order 1 are far above those of order 2, and errors of order 4 are far above rounding.
     coarse, fine = (missed(engine, linkage, name, every) for every in (40, 80))
     way = np.abs(exact(name) - exact(name)[0]).max() / linkage.length_scale
     promise = engine.order(linkage)
@@ -210,17 +209,17 @@ def in_units(engine: Engine, name: str, length: float = 1.0, mass: float = 1.0) 
     return [run.pose / unit, run.twist / unit, run.reaction / (mass * arm)]
 
 
-# As shipped MuJoCo's impedance grows over a millimetre, and its solver stops by metres per second squared.
+# As shipped MuJoCo's impedance depends on the gap in metres, and the tolerance of its solver on m/s^2.
 OWN = (*pymunk.VARIANTS, mujoco.TUNED, mujoco.EXTENDED)
 UNITS = [(2.0**-10, 1.0), (1.0, 1e6)]
 
 
 @pytest.mark.parametrize("name", ["free_four_bar", "driven_slider_crank", "car_and_trailer"])
 @pytest.mark.parametrize("engine", OWN, ids=label)
-def test_units_of_length_and_mass_change_no_method(engine: Engine, name: str) -> None:
+def test_methods_do_not_depend_on_units_of_length_and_mass(engine: Engine, name: str) -> None:
     linkage = in_units(engine, name)
     for length, mass in UNITS:
-        # Other numbers round, a stiff spring amplifies that, and a reaction is a difference of velocities over 1e-4 s.
+        # Rounding differs, a stiff spring amplifies it, and a reaction is a change of velocity over 1e-4 s.
         for changed, right, allowed in zip(
             in_units(engine, name, length, mass), linkage, (1e-9, 1e-9, 1e-6), strict=True
         ):
@@ -229,12 +228,12 @@ def test_units_of_length_and_mass_change_no_method(engine: Engine, name: str) ->
 
 @dataclass(frozen=True)
 class Belt(Gear):
-    """A joint newer than every adapter: the rotations are coupled by the ratio of two pulleys."""
+    """A joint that no adapter knows: it couples two rotations by the ratio of two pulleys."""
 
 
 @dataclass(frozen=True)
 class Brake(Torque):
-    """A force element newer than every adapter: a smoothed Coulomb torque."""
+    """A force element that no adapter knows: a smoothed Coulomb torque."""
 
     def on(self, first, second, first_twist, second_twist):
         rate = second_twist[..., 2] - first_twist[..., 2]
@@ -257,7 +256,7 @@ REFUSED += [(engine, WITH_BRAKE, "Brake") for engine in EVERY_ENGINE if engine.n
 
 
 @pytest.mark.parametrize(("engine", "mechanism", "named"), REFUSED, ids=lambda value: getattr(value, "variant", None))
-def test_an_adapter_refuses_an_element_that_it_does_not_know_by_name(engine, mechanism, named):
+def test_an_adapter_refuses_an_unknown_element_by_name(engine, mechanism, named):
     if engine.missing:
         pytest.skip(engine.missing)
     with pytest.raises(Unsupported, match=named):
@@ -272,29 +271,29 @@ CAPABILITIES = [
 
 
 @pytest.mark.parametrize("capability", CAPABILITIES, ids=lambda capability: capability.engine)
-def test_a_table_of_constructions_has_classes_of_the_vocabulary_and_no_reason_against_them(capability):
+def test_a_table_of_constructions_has_known_classes_and_no_reason_against_them(capability):
     assert {*capability.joints} <= {*JOINTS}
     assert {*(capability.forces or ())} <= {*FORCES}
     assert {*capability.lacks} <= {*JOINTS, *FORCES} - {*capability.joints} - {*(capability.forces or ())}
 
 
 @pytest.mark.parametrize("writer", [MJCF, URDF, SCRIPT], ids=lambda writer: type(writer).__name__)
-def test_a_written_file_never_lacks_an_element(writer):
+def test_exports_refuse_unknown_elements(writer):
     for mechanism in (WITH_BELT, WITH_BRAKE):
         with pytest.raises(Unsupported):
             writer.write(mechanism, 0.01, "default")
 
 
 @pytest.mark.parametrize("name", OURS)
-def test_an_engine_that_evaluates_forces_by_their_own_law_brakes_the_plate(name):
+def test_engines_that_evaluate_force_elements_accept_an_unknown_law(name):
     engine = next(engine for engine in EVERY_ENGINE if engine.name == name)
     if engine.missing:
         pytest.skip(engine.missing)
     run = engine.build(WITH_BRAKE, 1e-3)(10, 50)
-    # 0.2 N m on 0.1 kg m^2 for 0.5 s; the tanh differs from 1 by 2e-9 while the plate is faster than 1 rad/s.
+    # 0.2 N m act on 0.1 kg m^2 for 0.5 s. The tanh differs from 1 by 2e-9 if the plate is faster than 1 rad/s.
     assert run.twist[-1, 0, 2] == pytest.approx(1.0, abs=2e-4)
 
 
-def test_machine_code_leaves_an_unknown_joint_to_its_own_rows():
+def test_compiled_code_is_not_used_for_an_unknown_joint():
     run = Lagrange().build(WITH_BELT, 1e-3)(10, 50)
     assert run.twist[-1, :, 2] == pytest.approx([2.0, 4.0], abs=1e-12)

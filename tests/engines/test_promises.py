@@ -34,7 +34,7 @@ SLIDER = DrivenSliderCrank().mechanism()
 
 
 def slot_off_the_centre() -> Mechanism:
-    """The slotted point off the centre of mass of a slider that may turn: a push across the slot turns it."""
+    """A slider in a slot whose point is not its centre of mass, so that the force of the slot turns it."""
     joints = [joint for joint in SLIDER.joints if not (isinstance(joint, Drive) and joint.turning_rate == 0)]
     moved = (replace(joint, second_point=(0.1, 0.0)) if isinstance(joint, Slot) else joint for joint in joints)
     return replace(SLIDER, joints=tuple(moved))
@@ -70,7 +70,7 @@ ENGINES: tuple[Engine, ...] = (
 
 
 def words(engine: Engine, mechanism: Mechanism) -> str:
-    """A promise in the fields that differ from their defaults."""
+    """A declared order as text, with the fields that differ from their defaults."""
     promise = engine.order(mechanism)
     if isinstance(promise, NotDeclared):
         return "no order"
@@ -85,11 +85,11 @@ def lines() -> Iterator[str]:
             yield f"  {name}: {words(engine, mechanism)}; held by: {describe_enforcement(engine, mechanism)}"
 
 
-def test_every_method_promises_its_order_and_says_who_holds_each_joint(golden):
+def test_declared_orders_and_enforcement_of_all_methods(golden):
     golden("promises.txt", "\n".join(lines()) + "\n")
 
 
-def test_a_motion_is_known_by_its_joints_loads_and_start():
+def test_properties_of_a_motion_follow_from_joints_loads_and_start():
     motions = [FREE, MECHANISMS["moving"], DRIVEN, SPINNING]
     assert [starts_at_rest(motion) for motion in motions] == [True, False, False, False]
     assert [is_prescribed(mechanism_) for mechanism_ in (FREE, DRIVEN, SKATE, MECHANISMS["gears"])] == [
@@ -98,8 +98,7 @@ def test_a_motion_is_known_by_its_joints_loads_and_start():
         False,
         True,
     ]
-    # Two blades leave a body one velocity, about the point where they meet across, and a drive none.
-    # Its poses are free.
+    # Two skates leave a body one velocity, and a drive removes it. The poses are not prescribed.
     blades = (Skate("right", None, "body", (1.0, 0.0), 0.0), Skate("up", None, "body", (0.0, 1.0), math.pi / 2))
     body = Body("body", 1.0, 0.5, (0.0, 0.0, 0.0), (2.0, -2.0, 2.0))
     driven = Mechanism((body,), (*blades, Drive("drive", None, "body", 2.0, 0.0)))
@@ -119,7 +118,7 @@ def test_a_motion_is_known_by_its_joints_loads_and_start():
     assert not turns_steadily(replace(SPINNING, bodies=(*SPINNING.bodies, arm), joints=(*SPINNING.joints, rim)))
 
 
-def test_an_altered_engine_is_held_to_what_is_promised_of_the_mechanism_as_it_is():
+def test_a_wrong_engine_has_the_declared_order_of_the_unchanged_mechanism():
     inside = mujoco.DEFAULT
     altered = Altered(inside, lambda mechanism: replace(mechanism, joints=mechanism.joints[:2]))
     assert (
@@ -130,7 +129,7 @@ def test_an_altered_engine_is_held_to_what_is_promised_of_the_mechanism_as_it_is
     assert altered.order(FREE) == inside.order(FREE) != inside.order(altered.change(FREE))
 
 
-def test_an_extrapolation_carries_more_rounding_and_reads_reactions_of_its_finest_steps():
+def test_an_extrapolation_declares_its_rounding_and_the_steps_of_reactions():
     promise = pymunk.EXTENDED.order(MECHANISMS["moving"])
     assert isinstance(promise, ConvergenceOrder)
     assert (promise.order, promise.reaction, promise.differences, promise.of("gap")) == (6, 4, 8, 6)
@@ -139,12 +138,12 @@ def test_an_extrapolation_carries_more_rounding_and_reads_reactions_of_its_fines
 
 @dataclass(frozen=True)
 class Divided(Toy):
-    """Holds the first joint by itself, the others by our rows."""
+    """An engine that enforces the first joint itself, and the other joints by our rows."""
 
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         return "engine" if joint == mechanism.joints[0] else "engine, our rows"
 
 
-def test_joints_of_one_kind_that_differ_are_told_by_name():
+def test_joints_of_one_kind_with_different_enforcement_are_named():
     others = " and ".join(joint.name for joint in FREE.joints[1:])
     assert describe_enforcement(Divided(), FREE) == f"engine; {others}: engine, our equations"

@@ -1,6 +1,6 @@
-"""Scenes that are exported to MJCF, to a pymunk script and to URDF are read back as equal mechanisms, to rounding.
+"""Export of scenes to MJCF, pymunk scripts and URDF. The files are read back as equal mechanisms, to rounding.
 
-A file with rounded digits is read as a model that moves exactly in a plane, with a note of the effect.
+A file with rounded digits is read as a planar model with a note about the effect.
 """
 
 from __future__ import annotations
@@ -36,11 +36,10 @@ from tests import independent
 from tests.engines.test_matrix import rod_in_a_slot
 from tests.mechanisms import ALONE
 
-# Numbers are written with all their digits. The difference is rounding times the condition of the rows. It is largest,
-# 2e-13, for ten four-bars in line, which are 0.05 rad from a singular position.
+# The difference is rounding times the condition of the rows. The largest is 2e-13, for ten four-bars in line, which are
+# 0.05 rad from a singular position.
 ROUND_TRIP_ROUNDING = 1e-12
-# Neither engine has a joint for a skate or a roll. Their constructions are our code before every step, or a contact,
-# which no reader takes for an ideal joint.
+# Neither engine has a joint for a skate or a roll. Readers cannot recognise our constructions of these.
 WITHOUT_JOINT = (Skate, Roll)
 EXPORTABLE = [
     scene for scene in SCENES if not any(isinstance(joint, WITHOUT_JOINT) for joint in scene.mechanism().joints)
@@ -50,7 +49,7 @@ ELASTIC = ("pin", "gear", "spring", "damper", "torsion-spring", "torsion-damper"
 
 
 def assert_equal(mechanism: Mechanism, other: Mechanism, driven: tuple[str, ...] = ()) -> None:
-    """Equal accelerations, total joint forces on every body, and degrees of freedom.
+    """Assert that accelerations, total joint forces on every body, and degrees of freedom are equal.
 
     `driven`: bodies of a prescribed motion, of which an engine stores neither mass nor centre of mass: only their
     rotations are compared, and the forces on all other bodies.
@@ -85,12 +84,12 @@ def from_script(text: str, folder) -> Mechanism:
     return read_pymunk(runpy.run_path(str(folder / "exported.py"))["make"]()).mechanism
 
 
-# Long chains take seconds, and have the same elements as short ones.
+# Long chains take seconds and have the same elements as short chains.
 SHORT_SCENES = [scene for scene in SCENES if len(scene.mechanism().bodies) < 50]
 
 
 @pytest.mark.parametrize("scene", SHORT_SCENES, ids=lambda scene: scene.name)
-def test_a_scene_comes_back_from_mjcf_and_from_a_script_or_is_refused(scene, tmp_path):
+def test_a_scene_is_read_back_from_mjcf_and_a_script_or_refused(scene, tmp_path):
     mechanism = scene.mechanism()
     if scene in EXPORTABLE:
         engine = (DEFAULT, TUNED)[EXPORTABLE.index(scene) % 2]
@@ -105,7 +104,7 @@ def test_a_scene_comes_back_from_mjcf_and_from_a_script_or_is_refused(scene, tmp
     assert "\n" not in str(reason.value)
 
 
-def test_a_drive_comes_back_from_mjcf_as_a_drive_and_an_armature_that_is_only_large_as_an_inertia():
+def test_only_the_armature_of_an_exported_drive_is_read_as_a_drive():
     mechanism = scene("driven_four_bar").mechanism()
     again = from_mjcf(DEFAULT.text(mechanism, 1e-3))
     drives, again_drives = (
@@ -118,7 +117,7 @@ def test_a_drive_comes_back_from_mjcf_as_a_drive_and_an_armature_that_is_only_la
     assert not any(isinstance(joint, Drive) for joint in from_mjcf(text).joints)
 
 
-def test_what_no_constraint_of_pymunk_stands_for_has_no_script():
+def test_mechanisms_without_a_constraint_of_pymunk_have_no_script():
     body = Body("plate", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     pushed = Mechanism((body,), (), (0.0, 0.0), (Force("push", "plate", (0.1, 0.0), (0.0, 1.0)),))
     for mechanism, reason in ((pushed, "'push' acts off the centre of mass"), (rod_in_a_slot(), "our code")):
@@ -126,7 +125,7 @@ def test_what_no_constraint_of_pymunk_stands_for_has_no_script():
             script(PYMUNK, mechanism, 1e-3)
 
 
-def test_a_constant_force_at_the_centre_and_a_torque_between_two_bodies_come_back_from_a_script(tmp_path):
+def test_constant_forces_and_torques_are_read_back_from_a_script(tmp_path):
     mechanism = random_mechanism(31, 6, (*ELASTIC, "weld"))
     first, second = (body.name for body in mechanism.bodies[:2])
     pushes = (Force("push", first, (0.0, 0.0), (0.3, -1 / 3)), Torque("twist", first, second, 0.7))
@@ -137,7 +136,7 @@ def test_a_constant_force_at_the_centre_and_a_torque_between_two_bodies_come_bac
         assert_equal(mechanism, again)
 
 
-def test_an_exported_script_with_a_constant_torque_moves_as_the_engine_does(tmp_path):
+def test_an_exported_script_with_a_constant_torque_has_the_engines_motion(tmp_path):
     mechanism = scene("andrews").mechanism()
     text = script(PYMUNK, mechanism, 1e-5)
     (tmp_path / "andrews.py").write_text(text)
@@ -154,13 +153,13 @@ def test_an_exported_script_with_a_constant_torque_moves_as_the_engine_does(tmp_
     np.testing.assert_allclose(angles, read_back.pose[-1, :, 2], rtol=0, atol=1e-12)
 
 
-def test_springs_dampers_gears_and_welds_come_back(tmp_path):
+def test_springs_dampers_gears_and_welds_are_read_back(tmp_path):
     kinds = set()
     for number in range(5, 14):
         mechanism = random_mechanism(31, number, (*ELASTIC, "weld"))
         assert_equal(mechanism, from_script(script(PYMUNK, mechanism, 1e-3), tmp_path))
         kinds |= {type(part) for part in (*mechanism.joints, *mechanism.forces)}
-        # MuJoCo merges a welded body with its parent, so it does not come back as a body.
+        # MuJoCo merges a welded body with its parent.
         mechanism = random_mechanism(31, number, ELASTIC)
         assert_equal(mechanism, from_mjcf(TUNED.text(mechanism, 1e-3)))
         kinds |= {type(part) for part in (*mechanism.joints, *mechanism.forces)}
@@ -168,7 +167,7 @@ def test_springs_dampers_gears_and_welds_come_back(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["pinned_body_free", "pendulum_1", "pendulum_2", "pendulum_10", "person_one_foot"])
-def test_a_tree_comes_back_from_urdf_at_rest(name):
+def test_a_tree_is_read_back_from_urdf_at_rest(name):
     mechanism = scene(name).mechanism()
     resting = tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in mechanism.bodies)
     at_rest = replace(mechanism, bodies=resting, gravity=(0.5, -2.0))
@@ -178,7 +177,7 @@ def test_a_tree_comes_back_from_urdf_at_rest(name):
     assert_equal(at_rest, read_mujoco(model).mechanism)
 
 
-def test_a_weld_is_a_fixed_joint_of_urdf_and_the_file_moves_as_the_mechanism():
+def test_a_weld_is_exported_as_a_fixed_joint_of_urdf():
     mechanism = ALONE["weld"]
     model = mujoco.MjModel.from_xml_string(urdf(mechanism))
     data = mujoco.MjData(model)
@@ -186,7 +185,7 @@ def test_a_weld_is_a_fixed_joint_of_urdf_and_the_file_moves_as_the_mechanism():
     for _ in range(500):
         mujoco.mj_step(model, data)
     turned = TRUTH.build(mechanism, 0.1)(5, 1).pose[-1, :, 2] - mechanism.pose[:, 2]
-    # The error of RK4 at 1 ms is 1e-9; with a hinge instead of the weld the difference is 1 rad.
+    # The error of RK4 at 1 ms is 1e-9. With a hinge instead of the weld the difference is 1 rad.
     np.testing.assert_allclose(data.qpos, [turned[0], turned[1] - turned[0]], rtol=0, atol=1e-7)
 
 
@@ -195,7 +194,7 @@ BY_CONTACT = ("sleigh", "cart", "rolling_ellipse")
 
 
 @pytest.mark.parametrize("name", ["in halves", "free_four_bar", "driven_slider_crank", "n_four_bar_2", *BY_CONTACT])
-def test_an_exported_model_moves_as_the_engines_and_its_bars_go_through_the_joints(name):
+def test_an_exported_model_has_the_engines_motion_and_bars_through_the_joints(name):
     mechanism = IN_HALVES if name == "in halves" else scene(name).mechanism()
     model = DEFAULT.model(mechanism, 1e-3)
     exported = mujoco.MjModel.from_xml_string(DEFAULT.text(mechanism, 1e-3))
@@ -204,8 +203,8 @@ def test_an_exported_model_moves_as_the_engines_and_its_bars_go_through_the_join
     for _ in range(60):
         mujoco.mj_step(exported, data)
         mujoco.mj_step(model.compiled, engine_data)
-    # The engine has another unit of mass, so the solver's tolerance makes a difference. If the plane below a blade were
-    # exported without the height that it gets after the model is compiled, the difference would be 3e-7 m and more.
+    # The tolerance of the solver has an effect, since the engine uses another unit of mass. The difference is 3e-7 m or
+    # more if the exported plane below a blade lacks the height that is set after compilation.
     np.testing.assert_allclose(data.qpos, engine_data.qpos, rtol=0, atol=1e-8)
     assert bool(model.split_bodies) == (name == "in halves")
     if name in BY_CONTACT:
@@ -223,8 +222,8 @@ def test_an_exported_model_moves_as_the_engines_and_its_bars_go_through_the_join
             np.testing.assert_allclose(ends, sorted(wanted.tolist()), rtol=0, atol=1e-12)
 
 
-# A four-bar linkage in the plane of x and z, its bodies' own axes y in the plane; {} are a right angle as the file has
-# it, the axis of a hinge, and how far beside the plane the coupler lies [m].
+# A four-bar linkage in the x-z plane. The placeholders are rounded right angles, the axis of a hinge, and the distance
+# of the coupler from the plane [m].
 ROUNDED_FOUR_BAR = """<mujoco model="four bar"><compiler angle="radian"/><option timestep="0.001"/><worldbody>
  <body name="crank" {0}><joint name="A" axis="0 0 1"/><inertial pos="0 0.15 0" mass="1" diaginertia="0.01 0.001 0.01"/>
  <body name="coupler" pos="0 0.3 {2}"><joint name="B" axis="{1} 0 1"/>
@@ -246,7 +245,7 @@ ROUNDED_FILES = {
 
 
 @pytest.mark.parametrize("name", ROUNDED_FILES)
-def test_a_rounded_file_moves_as_the_exact_one_and_its_effect_is_told(name):
+def test_a_rounded_file_has_the_exact_motion_and_a_note_of_the_effect(name):
     t, exact = np.linspace(0.0, 1.0, 21), rounded_model()
     coordinates = independent.motion(exact, mujoco.MjData(exact), [independent.connected("C")], t)[0]
     reading = read_mujoco(rounded_model(*ROUNDED_FILES[name]))
@@ -254,7 +253,7 @@ def test_a_rounded_file_moves_as_the_exact_one_and_its_effect_is_told(name):
     angles = motion.pose[..., 2] - motion.pose[:1, :, 2]
     ours = np.column_stack([angles[:, 0], angles[:, 1] - angles[:, 0], angles[:, 2]])
     tilt = getattr(reading.model, "tilt")  # noqa: B009
-    # The distance of neighbouring starts grows 30-fold in a second, and bodies beside the plane move by the tilt.
+    # Differences of the start grow 30-fold in a second, and bodies beside the plane are displaced by the tilt.
     assert np.abs(np.abs(ours) - np.abs(coordinates)).max() < 30 * tilt + 1e-8
     assert refuse_disagreement(reading) < 1e-9
     judged = check(reading, name, 0.5, 1e-2, plan=SweepPlan(0.0))
@@ -267,7 +266,7 @@ def test_a_rounded_file_moves_as_the_exact_one_and_its_effect_is_told(name):
 
 
 @pytest.mark.parametrize(("angle", "remedy"), [("1.57", True), ("1.3", False)])
-def test_what_is_tilted_by_more_is_no_plane(angle, remedy):
+def test_a_larger_tilt_is_refused(angle, remedy):
     with pytest.raises(Unsupported, match="joint 'D': it is not parallel to joint 'A', but") as refused:
         read_mujoco(rounded_model(rocker=f'euler="{angle} 0 0"'))
     assert ("with six digits or more" in str(refused.value)) is remedy
