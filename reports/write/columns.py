@@ -30,7 +30,7 @@ from reports.write.tables import DASH, error_words, markdown, milliseconds, numb
 
 
 class Column(StrEnum):
-    """The kinds of methods. Each kind except NAIVE has a column in the tables."""
+    """The kinds of methods. NAIVE methods, whose joints are enforced outside of the engine, have no column."""
 
     SHIPPED = "as shipped"
     SETTINGS = "documented settings"

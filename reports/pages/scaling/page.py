@@ -193,7 +193,7 @@ AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING_SPARSE_NEWTON, BandedChain())
 
 # In a chain of N equal links, an iteration multiplies the slowest mode by 1 - pi^2/(4 N^2). The iterations of a step
-# multiply it by RESIDUAL, so their number is SWEEPS_OVER_SQUARE N^2. ITERATION_LIMIT bounds it from CAPPED links on.
+# multiply it by RESIDUAL, so their number is SWEEPS_OVER_SQUARE N^2. From N = CAPPED on, it is ITERATION_LIMIT.
 SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
 CAPPED = ceil(sqrt(ITERATION_LIMIT / SWEEPS_OVER_SQUARE))
 

@@ -50,7 +50,7 @@ class ModelCheck(Task):
         for setting in (document, *document["tried"]):
             setting.pop("cpu")
             setting.pop("front", None)
-        # Unlike the cheapest sufficient setting, that with the largest step does not depend on the machine.
+        # The cheapest sufficient setting would depend on the machine; the largest sufficient step does not.
         coarsest = coarsest_enough(checked)
         document["advised"] = coarsest and {
             "words": coarsest.change.words,
