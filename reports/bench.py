@@ -37,7 +37,7 @@ BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't
 TURNS = 7  # runs of each of two loops, alternating, so that a slow period of the machine affects both
 COMMAND_TURNS = 3
 ROOT = Path(__file__).resolve().parents[1]
-LESSON, LESSON_SCENE, LESSON_STEP = "lessons/four_bar.html", 1, 4e-3  # the free linkage, which moves for 1 s; step [s]
+LESSON, LESSON_SCENE, LESSON_STEP = "lessons/four_bar.html", 1, 4e-3  # The free linkage, which moves for 1 s; step [s].
 # The time of the first contentful paint of a page, as the browser reports it [ms].
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
 STEPPED = """async ([scene, step, turns]) => {
@@ -163,8 +163,8 @@ class CommandCost:
     """The fastest of COMMAND_TURNS runs of a command, each in an empty folder."""
 
     words: tuple[str, ...]
-    wall: float  # s of wall time
-    cpu: float  # s
+    wall: float  # s of wall time.
+    cpu: float  # s.
     status: int
 
 

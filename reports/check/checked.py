@@ -43,13 +43,13 @@ from reports.write.tables import number
 
 SWEEP_BUDGET = 5.0  # s of CPU time for all settings together
 COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
-SEARCH_BUDGET = 60.0  # s of CPU time to look for settings that reach a goal
-READER_MEMBERS = ("words", "elements", "reads", "read")  # that every reader must have
-NAMES_LISTED = 6  # elements in a sentence
-COMPARED_SAMPLES = 200  # approximate number of compared instants
-OBSTACLE_CHECKS = 10  # largest number of obstacle checks between two samples
-APPLY_MARGIN = 1.1  # times the expected error: a larger error shows that some settings did not reach the model
-QUICK_TOLERANCE = 1e-9  # relative tolerance of the declared motion with --quick: enough for errors of two digits
+SEARCH_BUDGET = 60.0  # s of CPU time to look for settings that reach a goal.
+READER_MEMBERS = ("words", "elements", "reads", "read")  # That every reader must have.
+NAMES_LISTED = 6  # Elements in a sentence.
+COMPARED_SAMPLES = 200  # Approximate number of compared instants.
+OBSTACLE_CHECKS = 10  # Largest number of obstacle checks between two samples.
+APPLY_MARGIN = 1.1  # Times the expected error: a larger error shows that some settings did not reach the model.
+QUICK_TOLERANCE = 1e-9  # Relative tolerance of the declared motion with --quick: enough for errors of two digits.
 Array = NDArray[np.float64]
 
 
@@ -73,12 +73,12 @@ def read_user_model(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> 
 class ErrorParts:
     """Contributions to the error as largest pose distances (`judging.pose_distance`); an unknown one is NaN."""
 
-    softness: float  # between the motion of the engine's declared soft joints and the ideal motion
-    step: float  # between the user's run and the declared motion
-    rest: float  # between the run at the smallest step of the sweep and the declared motion
-    smallest: float  # s; the smallest step of the sweep
-    falling: bool  # whether the error still decreases at the smallest step, so that `rest` is only an upper bound
-    divided: bool = True  # False: the engine declares no law of its joints, so softness and step are not separated
+    softness: float  # Between the motion of the engine's declared soft joints and the ideal motion.
+    step: float  # Between the user's run and the declared motion.
+    rest: float  # Between the run at the smallest step of the sweep and the declared motion.
+    smallest: float  # s; the smallest step of the sweep.
+    falling: bool  # Whether the error still decreases at the smallest step, so that `rest` is only an upper bound.
+    divided: bool = True  # False: the engine declares no law of its joints, so softness and step are not separated.
 
 
 def split_error(
@@ -124,9 +124,9 @@ class Applied:
     """The file that --apply has written, and a run of it."""
 
     file: str
-    words: str  # its settings
-    error: float  # largest error of the run
-    cpu: float  # s of stepping
+    words: str  # Its settings.
+    error: float  # Largest error of the run.
+    cpu: float  # s of stepping.
     notes: tuple[str, ...]
 
 
@@ -144,8 +144,8 @@ class CheckResult:
     judge_errors: Errors
     opens: Opening | None
     parts: ErrorParts
-    table: list[SettingRun]  # the user's own settings are the first
-    has_tolerance: bool = True  # whether the user gave the tolerance
+    table: list[SettingRun]  # The user's own settings are the first.
+    has_tolerance: bool = True  # Whether the user gave the tolerance.
     applied: Applied | None = None
 
     @property

@@ -14,11 +14,11 @@ from reference.trajectory import Trajectory
 from reports.check.judging import accelerations
 
 Array = NDArray[np.float64]
-NEARLY_SINGULAR = 1e-2  # ratio of the smallest to the largest singular value below which a position is near-singular
-RANK_TOLERANCE = 1e-9  # ratio of a singular value to the largest below which it counts as zero
-SVD_NUMBERS = 2e7  # largest number of matrix elements, all samples together, whose singular values are computed
-DIFFERENCE_STEP = 1e-6  # step of finite differences, relative to the length and the time of the mechanism
-MOST_DIRECTIONS = 60  # free directions for which the eigenvalues are computed
+NEARLY_SINGULAR = 1e-2  # Ratio of the smallest to the largest singular value below which a position is near-singular.
+RANK_TOLERANCE = 1e-9  # Ratio of a singular value to the largest below which it counts as zero.
+SVD_NUMBERS = 2e7  # Largest number of matrix elements, all samples together, whose singular values are computed.
+DIFFERENCE_STEP = 1e-6  # Step of finite differences, relative to the length and the time of the mechanism.
+MOST_DIRECTIONS = 60  # Free directions for which the eigenvalues are computed.
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,15 @@ class Facts:
     rows: int
     freedoms: tuple[int, int]  # numbers of degrees of freedom of configuration and of velocity
     redundant: int
-    undetermined: tuple[str, ...]  # rows whose reactions are not unique
-    singular: tuple[tuple[float, float], ...]  # (time [s], smallest singular value divided by the largest)
-    dead_centres: tuple[tuple[float, str], ...]  # (time [s], body)
-    fastest_rotation: float  # rad/s
-    stiffest_mode: float  # 1/s, at the start
-    length: float  # m
-    time: float  # s
-    locked: bool = False  # the joints leave no freedom, and none prescribes a motion
-    locking_welds: tuple[str, ...] = ()  # of a locked mechanism: welds that as hinges would leave a freedom
+    undetermined: tuple[str, ...]  # Rows whose reactions are not unique.
+    singular: tuple[tuple[float, float], ...]  # (time [s], smallest singular value divided by the largest).
+    dead_centres: tuple[tuple[float, str], ...]  # (time [s], body).
+    fastest_rotation: float  # rad/s.
+    stiffest_mode: float  # 1/s, at the start.
+    length: float  # m.
+    time: float  # s.
+    locked: bool = False  # The joints leave no freedom, and none prescribes a motion.
+    locking_welds: tuple[str, ...] = ()  # Of a locked mechanism: welds that as hinges would leave a freedom.
 
 
 def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:

@@ -22,8 +22,8 @@ from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
 Array = NDArray[np.float64]
-DIVERGED = 1e12  # m, rad, m/s or rad/s: a state with a larger component has diverged
-SOFT_TOLERANCE = 1e-10  # relative; well below the truncation error of an engine and well above rounding
+DIVERGED = 1e12  # m, rad, m/s or rad/s: a state with a larger component has diverged.
+SOFT_TOLERANCE = 1e-10  # Relative; well below the truncation error of an engine and well above rounding.
 
 
 def accelerations(
@@ -73,14 +73,14 @@ def soft_motion(
     return out
 
 
-LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # its difference from the reference motion estimates the error of that motion
-JUDGE_SHARE = 0.1  # largest estimated error of the reference motion, relative to the user's tolerance
-ALONG_CURVE_TOLERANCE = 1e-12  # relative error of a step along the curve of one freedom
-LOOSER_CURVE_TOLERANCE = 1e-11  # of a second run along the curve, whose difference estimates the error
-DISTURBANCE = 1e-7  # relative to length and speed: its growth is linear, and it is well above the judge's error
-LINEAR_LIMIT = 1e-2  # relative to length and speed: a larger disturbance does not grow linearly
-DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size): chaos is reported if both grow exponentially
-REMAINING_SHARE = 1e-3  # of a disturbance: if the projection onto the joints leaves less, the joints do not allow it
+LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # Its difference from the reference motion estimates the error of that motion.
+JUDGE_SHARE = 0.1  # Largest estimated error of the reference motion, relative to the user's tolerance.
+ALONG_CURVE_TOLERANCE = 1e-12  # Relative error of a step along the curve of one freedom.
+LOOSER_CURVE_TOLERANCE = 1e-11  # Of a second run along the curve, whose difference estimates the error.
+DISTURBANCE = 1e-7  # Relative to length and speed: its growth is linear, and it is well above the judge's error.
+LINEAR_LIMIT = 1e-2  # Relative to length and speed: a larger disturbance does not grow linearly.
+DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size): chaos is reported if both grow exponentially.
+REMAINING_SHARE = 1e-3  # Of a disturbance: if the projection onto the joints leaves less, the joints do not allow it.
 # A disturbance of a regular motion grows about linearly in time. Growth by this factor more counts as exponential.
 EXPONENTIAL_GROWTH = 100.0
 
@@ -90,10 +90,10 @@ class IdealMotion:
     """The ideal motion and its sensitivity to the initial state."""
 
     trajectory: Trajectory
-    looser: Trajectory  # the same motion with a larger tolerance; the difference estimates the error
-    growth: Array  # (times,) growth factor of a small disturbance of the initial state
-    horizon: float  # s; two small disturbances grow exponentially after this time; the duration if they do not
-    cut: bool = False  # whether the motion ends early, since the estimated error becomes too large
+    looser: Trajectory  # The same motion with a larger tolerance; the difference estimates the error.
+    growth: Array  # (times,) growth factor of a small disturbance of the initial state.
+    horizon: float  # s; two small disturbances grow exponentially after this time; the duration if they do not.
+    cut: bool = False  # Whether the motion ends early, since the estimated error becomes too large.
 
     @property
     def grown(self) -> float:
@@ -214,7 +214,7 @@ def _growth(
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-START_AGREEMENT = 1e-6  # of the largest acceleration: rounding of two solutions, also with badly scaled masses
+START_AGREEMENT = 1e-6  # Of the largest acceleration: rounding of two solutions, also with badly scaled masses.
 # Accuracy of the reference motion, relative to the mechanism's speed and largest force; smaller values count as zero.
 ZERO_SHARE = 1e-9
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
@@ -225,8 +225,8 @@ class Errors:
     """Errors of a run at its samples (times,); NaN after the run has diverged, and for values that are not compared."""
 
     t: Array
-    of: dict[str, Array]  # keys of ERROR_UNITS -> (times,)
-    whole: Array  # `pose_distance` from the ideal motion; its maximum is compared with the tolerance
+    of: dict[str, Array]  # Keys of ERROR_UNITS -> (times,).
+    whole: Array  # `pose_distance` from the ideal motion; its maximum is compared with the tolerance.
     finished: bool
 
     @property

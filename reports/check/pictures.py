@@ -19,9 +19,9 @@ from reports.check.judging import ERROR_UNITS, Errors, IdealMotion
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
 
 Array = NDArray[np.float64]
-Lines = list[list[list[float]]]  # (line, point, coordinate) [m]
-Curves = dict[str, list[float]]  # errors over time by quantity, in its unit
-SMALLEST_DRAWN = 1e-16  # smaller errors are drawn with this value on a logarithmic axis
+Lines = list[list[list[float]]]  # (line, point, coordinate) [m].
+Curves = dict[str, list[float]]  # Errors over time by quantity, in its unit.
+SMALLEST_DRAWN = 1e-16  # Smaller errors are drawn with this value on a logarithmic axis.
 BAR_STYLE: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 
@@ -29,26 +29,26 @@ BAR_STYLE: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 class Pose:
     """The lines of a drawn pose."""
 
-    bars: Lines  # a polygon for each body through its joints
-    links: Lines  # rods and springs
-    rails: Lines  # guides of slides on the ground
+    bars: Lines  # A polygon for each body through its joints.
+    links: Lines  # Rods and springs.
+    rails: Lines  # Guides of slides on the ground.
 
 
 @dataclass(frozen=True)
 class PictureData:
     """The numbers of both pictures."""
 
-    t: list[float]  # s
-    own: Curves  # errors of the user's settings at `t`
+    t: list[float]  # s.
+    own: Curves  # Errors of the user's settings at `t`.
     judge_t: list[float]
     judge: Curves  # errors of the judge at `judge_t`
     advised_t: list[float]
-    advised: Curves | None  # errors of other settings at `advised_t`; None if the user's settings meet the tolerance
-    horizon: float | None  # s from which on errors grow exponentially; None if they do not
-    moment: float  # s; time of the largest error of the user's settings
-    ground: list[list[float]]  # ground points (points, 2) [m]
-    ideal: Pose  # at `moment`, with ideal joints
-    found: Pose  # at `moment`, with the user's settings
+    advised: Curves | None  # Errors of other settings at `advised_t`; None if the user's settings meet the tolerance.
+    horizon: float | None  # s from which on errors grow exponentially; None if they do not.
+    moment: float  # s; time of the largest error of the user's settings.
+    ground: list[list[float]]  # Ground points (points, 2) [m].
+    ideal: Pose  # At `moment`, with ideal joints.
+    found: Pose  # At `moment`, with the user's settings.
     label: str = "your settings"
 
     def as_text(self) -> str:

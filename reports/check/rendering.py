@@ -26,8 +26,8 @@ class Section:
 
     title: str
     sentences: tuple[str, ...] = ()
-    facts: tuple[tuple[str, str], ...] = ()  # (label, sentence)
-    code: tuple[str, ...] = ()  # lines that the user can copy
+    facts: tuple[tuple[str, str], ...] = ()  # (label, sentence).
+    code: tuple[str, ...] = ()  # Lines that the user can copy.
     header: tuple[str, ...] = ()
     rows: tuple[tuple[str, ...], ...] = ()
     picture: tuple[str, str] | None = None  # (title, SVG)

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from reports.check.checked import SweepPlan
     from reports.check.rendering import Section
 
-DEFAULT_TOLERANCE = 1e-4  # error of the advised settings if the user gave no tolerance
-MAX_DURATION = 1000.0  # s of motion
+DEFAULT_TOLERANCE = 1e-4  # Error of the advised settings if the user gave no tolerance.
+MAX_DURATION = 1000.0  # s of motion.
 
 
 @dataclass(frozen=True)
@@ -28,17 +28,17 @@ class CheckRequest:
 
     word: str  # the model as on the command line, relative to `folder`
     folder: str
-    duration: float = 2.0  # s
-    tolerance: float | None = None  # None: not given
+    duration: float = 2.0  # s.
+    tolerance: float | None = None  # None: not given.
     without: tuple[str, ...] = ()
     key: str = ""
     step: float | None = None
     pictures: bool = False
     quick: bool = False
     everything: bool = False
-    search: bool = False  # try smaller steps until a setting meets the tolerance
-    apply: str = ""  # path of the file to write with the advised settings
-    notes: str = ""  # path of the file to which the progress is written
+    search: bool = False  # Try smaller steps until a setting meets the tolerance.
+    apply: str = ""  # Path of the file to write with the advised settings.
+    notes: str = ""  # Path of the file to which the progress is written.
 
     def refuse_bad(self) -> CheckRequest:
         """Return the request itself. Raises BadInput for a number out of its range."""
@@ -72,9 +72,9 @@ class CheckReport:
     verdict: str
     answer: Section  # the first screen
     sections: tuple[Section, ...]
-    line: tuple[str, ...]  # the row in the table of a folder
-    data: dict[str, Any]  # the JSON document
-    trouble: str = ""  # why --apply wrote nothing
+    line: tuple[str, ...]  # The row in the table of a folder.
+    data: dict[str, Any]  # The JSON document.
+    trouble: str = ""  # Why --apply wrote nothing.
 
     @property
     def fine(self) -> bool:

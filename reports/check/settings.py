@@ -13,9 +13,9 @@ from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
 from reports.check.judging import Errors, measure_errors
 
-MAX_RUN_TIME = 1.0  # s of CPU time for one run; smaller steps are left out
-HELPFUL_RATIO = 0.75  # a smaller step is helpful if it reduces the error below this share of the previous error
-SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: the causes of a larger error can't be separated
+MAX_RUN_TIME = 1.0  # s of CPU time for one run; smaller steps are left out.
+HELPFUL_RATIO = 0.75  # A smaller step is helpful if it reduces the error below this share of the previous error.
+SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: the causes of a larger error can't be separated.
 # Relative change below which a saturated error counts as constant: two coarse steps seldom agree so well by chance.
 SATURATED_CHANGE = 0.01
 SMALLER_STEPS = 4  # number of smaller steps at which the user's settings run to separate the causes of the error
@@ -25,10 +25,10 @@ SMALLER_STEPS = 4  # number of smaller steps at which the user's settings run to
 class SweepPlan:
     """The choice of documented settings that are tried."""
 
-    patience: float  # s of CPU time for all settings
-    goal: float | None = None  # try smaller steps until the error of a setting is at most this value
-    quick: bool = False  # try four settings, and integrate the declared motion with a larger tolerance
-    everything: bool = False  # also try settings that are too expensive to be advised
+    patience: float  # s of CPU time for all settings.
+    goal: float | None = None  # Try smaller steps until the error of a setting is at most this value.
+    quick: bool = False  # Try four settings, and integrate the declared motion with a larger tolerance.
+    everything: bool = False  # Also try settings that are too expensive to be advised.
 
 
 @dataclass(frozen=True, eq=False)

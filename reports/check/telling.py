@@ -14,9 +14,9 @@ from reports.check.rendering import Section
 from reports.check.settings import SATURATED_ERROR, SettingRun, pareto_front
 from reports.write import tables
 
-NOTES_LISTED = 4  # notes on elements in the short report
-CHEAPER_COST = 0.9  # of the user's CPU time; a cost above it may differ from the user's only by noise of the clock
-BETTER_ERROR = 0.9  # of the previous row's error; the first screen leaves out a setting with a larger error
+NOTES_LISTED = 4  # Notes on elements in the short report.
+CHEAPER_COST = 0.9  # Of the user's CPU time; a cost above it may differ from the user's only by noise of the clock.
+BETTER_ERROR = 0.9  # Of the previous row's error; the first screen leaves out a setting with a larger error.
 CUT_NOTE = (
     "; beyond {:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing is compared there"
 )

@@ -18,9 +18,9 @@ from reports.pages.atlas.subjects import MAPS
 from reports.run import cluster
 from reports.run.running import run_into
 
-MAP_LIMIT = 600.0  # CPU seconds of one cell, far above the longest known one
-STRIDE = 4  # every fourth step is run first; steps between two equal outcomes are left out
-SMALL = 16  # points along a side; smaller maps are run completely
+MAP_LIMIT = 600.0  # CPU seconds of one cell, far above the longest known one.
+STRIDE = 4  # Every fourth step is run first; steps between two equal outcomes are left out.
+SMALL = 16  # Points along a side; smaller maps are run completely.
 VARIANTS_SHOWN = ("default", "tuned")
 ATLAS = "atlas"  # the folder in that of the results with the columns of the maps
 

@@ -26,8 +26,8 @@ from reports.run import supervisor, worker
 from reports.run.files import temporary_folder, write_whole
 from reports.run.running import worker_count
 
-MAX_WIDTH = 120  # columns of the output
-OVERWRITE = "\r\x1b[K"  # erases the current line of a terminal
+MAX_WIDTH = 120  # Columns of the output.
+OVERWRITE = "\r\x1b[K"  # Erases the current line of a terminal.
 # Modules that a check imports. The fork server imports them while this process reads the options and the model.
 EARLY = ("reports.check.document", "reports.check.telling", "numba")
 # Names that `switch_off` of engines/mujoco/reading and engines/pymunk/reading accepts; --help imports neither.

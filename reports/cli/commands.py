@@ -57,7 +57,7 @@ def invoke(arguments: Sequence[str]) -> int:
     status = FINE
     try:
         # typer's own `main` is not called, since it changes the exit status of a closed pipe and of Ctrl-C.
-        with written():  # for --help
+        with written():  # For --help.
             if words[0] in COMMANDS:
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
             else:

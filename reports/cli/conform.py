@@ -112,9 +112,9 @@ class Question:
     """A check of one engine, to be run by a worker."""
 
     named: Named
-    index: int  # of the engine in `named.engines()`
-    check: str  # name of the check
-    notes: str  # a folder; a file with the name of the check has the number of the current mechanism
+    index: int  # Of the engine in `named.engines()`.
+    check: str  # Name of the check.
+    notes: str  # A folder; a file with the name of the check has the number of the current mechanism.
 
 
 @cache

@@ -20,8 +20,8 @@ from reports.run.files import is_stream, write_whole
 from reports.site.animated import animation, shown
 from reports.site.lessons import take_like
 
-INSTANTS = 10  # number of instants of the exact motion in the comments
-WRITER_MEMBERS = ("suffix", "write", "commented")  # that every writer must have
+INSTANTS = 10  # Number of instants of the exact motion in the comments.
+WRITER_MEMBERS = ("suffix", "write", "commented")  # That every writer must have.
 
 SceneName = Annotated[str, typer.Argument(help=f"A scene's name, or {REFERENCES}.")]
 Out = Annotated[Path | None, typer.Option("--out", help="The file; standard output unless given.")]

@@ -33,9 +33,9 @@ class Reference:
     """A scene or engine that is not registered, as text that can be stored and loaded again."""
 
     kind: str  # "scene" or "engine"
-    word: str  # a reference (`engines.loading`), or the name of a registered scene
-    folder: str  # the base of a relative path
-    settings: tuple[tuple[str, str], ...] = ()  # (name, value) of the changed numbers of the scene, as typed
+    word: str  # A reference (`engines.loading`), or the name of a registered scene.
+    folder: str  # The base of a relative path.
+    settings: tuple[tuple[str, str], ...] = ()  # (name, value) of the changed numbers of the scene, as typed.
 
     def text(self) -> str:
         return json.dumps([self.kind, self.word, self.folder, self.settings])

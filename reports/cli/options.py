@@ -14,8 +14,8 @@ from reports.run.files import is_stream
 
 FOLDER = Path("crosscheck-results")  # in the current folder, so that only --publish changes published results
 STORE = "cells.sqlite"
-STDOUT = Path("-")  # stands for the standard output
-SEARCH = "search"  # the folder in FOLDER with the results of random mechanisms
+STDOUT = Path("-")  # Stands for the standard output.
+SEARCH = "search"  # The folder in FOLDER with the results of random mechanisms.
 SITE = Path("crosscheck-site")
 REFERENCES = "package.module:NAME, or path/to/file.py"
 

@@ -43,8 +43,8 @@ from reports.write.templates import without_dead_links
 
 CHECKOUT = Path(__file__).parents[2]
 SEARCHED = ("search.md", "search_errors.svg")
-MANY = 1000  # rows; with fewer rows, starting workers takes longer than rendering
-PAGE_LIMIT = 600.0  # CPU seconds of one page
+MANY = 1000  # Rows; with fewer rows, starting workers takes longer than rendering.
+PAGE_LIMIT = 600.0  # CPU seconds of one page.
 Materials = Mapping[Page, Material]
 
 
@@ -179,8 +179,8 @@ class Drawing:
 
     def __call__(self, item: tuple[str, Material]) -> dict[str, str]:
         name, material = item
-        page = _pages(self.references)[name]  # a page has functions, which can't be pickled
-        gc.disable()  # it would traverse all imported objects, while one page leaves little garbage
+        page = _pages(self.references)[name]  # A page has functions, which can't be pickled.
+        gc.disable()  # It would traverse all imported objects, while one page leaves little garbage.
         try:
             return rendering.render_page(page, material, self.command)
         finally:

@@ -90,9 +90,9 @@ class Selection:
     variant: str | None = None
     settings: tuple[str, ...] = ()  # "NAME=VALUE" for numbers of the scenes
     full: bool = False
-    every: tuple[int, ...] = ()  # only these numbers of steps between samples
-    steps: tuple[float, ...] = ()  # only these steps [s]
-    limit: float = TIME_LIMIT  # CPU seconds of a cell
+    every: tuple[int, ...] = ()  # Only these numbers of steps between samples.
+    steps: tuple[float, ...] = ()  # Only these steps [s].
+    limit: float = TIME_LIMIT  # CPU seconds of a cell.
 
     def __post_init__(self) -> None:
         if not 0 < self.limit < float("inf"):

@@ -16,8 +16,8 @@ from reports.model.tasks import Task
 
 # A quick run of everything takes about twenty seconds on two cores. The limits apply to times by the formulas of
 # engines and tasks. Only the shortest cell of each method in each scene may take longer than QUICK_SECONDS.
-QUICK_SECONDS = 0.02  # s
-QUICK_CELL = 0.1  # s; limit of the shortest cell, of tasks, and of cells in `crosscheck versions`
+QUICK_SECONDS = 0.02  # s.
+QUICK_CELL = 0.1  # s; limit of the shortest cell, of tasks, and of cells in `crosscheck versions`.
 
 
 def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence[Page]) -> tuple[Scene, ...]:

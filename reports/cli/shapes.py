@@ -17,10 +17,10 @@ from reports.pages.centrodes.page import returned
 from reports.run.files import write_whole
 
 WRITERS = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
-DEFAULT_KINDS = ("csv", "svg")  # without dxf, which needs the extra `dxf`
-MOST_POINTS = 1_000_000  # more than a workshop can cut, and less than memory can hold
-MOST_BYTES = 2**27  # of the table of poses: about a hundred for each of a million poses
-COARSE = 1e-3  # relative error of the shapes above which the user is told that the table has too few poses
+DEFAULT_KINDS = ("csv", "svg")  # Without dxf, which needs the extra `dxf`.
+MOST_POINTS = 1_000_000  # More than a workshop can cut, and less than memory can hold.
+MOST_BYTES = 2**27  # Of the table of poses: about a hundred for each of a million poses.
+COARSE = 1e-3  # Relative error of the shapes above which the user is told that the table has too few poses.
 
 
 def shapes(

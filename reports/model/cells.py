@@ -30,8 +30,8 @@ COST_LIMIT = 0.8
 # A step finer than those of QUICK is left out if the declared order has already divided the error by this factor at a
 # coarser step, since the remaining error is rounding. So methods of order 4 have five steps, of order 6 or more three.
 DIVIDED = 1e8
-BESIDE_LIMIT = 0.5  # s; longest cell of an engine that is an extra
-SLOW_TO_BUILD = 1.0  # s; an engine that needs longer to build a model runs only in experiments of pages
+BESIDE_LIMIT = 0.5  # s; longest cell of an engine that is an extra.
+SLOW_TO_BUILD = 1.0  # s; an engine that needs longer to build a model runs only in experiments of pages.
 
 # Printed form -> step [s]: a frame of a screen, as in pymunk's examples; MuJoCo's default; half of this default.
 USUAL_STEPS = {"1/60 s": 1 / 60, "2 ms": 2e-3, "1 ms": 1e-3}
@@ -41,7 +41,7 @@ SAME_STEP = 0.01
 # Variants in the overview and in charts: an engine's defaults, its documented settings, and with code of this suite;
 # ideal constraints at order 1 and 4.
 FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
-MOST_VARIANTS = 3  # in the overview and in charts, for an engine without a variant in FEATURED
+MOST_VARIANTS = 3  # In the overview and in charts, for an engine without a variant in FEATURED.
 # Printed form of a step -> the engine whose users choose it; engines with another such step do not run it.
 HABITS = {"1/60 s": "pymunk", "2 ms": "mujoco"}
 OWN_VARIANTS = (

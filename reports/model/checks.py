@@ -12,17 +12,17 @@ from reports.model.quantities import QUANTITIES
 CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
 CHANGE = "change"  # the check against a baseline, which no known deviation excuses
 BEGINNINGS = ("upstream:", "by design:", "ours:")
-WORSE_DEVIATION = 2.0  # times the known deviation; a larger one fails
-BACK = 0.5  # of the bound; a known deviation below this value no longer occurs, which fails too
-ROUNDED = 10.0  # times the known deviation, if it consists of amplified rounding; another processor gave 2 and 1/17
+WORSE_DEVIATION = 2.0  # Times the known deviation; a larger one fails.
+BACK = 0.5  # Of the bound; a known deviation below this value no longer occurs, which fails too.
+ROUNDED = 10.0  # Times the known deviation, if it consists of amplified rounding; another processor gave 2 and 1/17.
 
 
 @dataclass(frozen=True)
 class Check:
     """The assertion that `measured` does not exceed `bound`."""
 
-    name: str  # one of CHECKS, or "change"
-    quantity: str  # the field of the Measurement
+    name: str  # One of CHECKS, or "change"
+    quantity: str  # The field of the Measurement.
     measured: float
     bound: float
     terms: tuple[tuple[str, float], ...] = ()  # (name, summand of the bound)
@@ -49,10 +49,10 @@ class Check:
 class Deviation:
     """A check that a method is known to fail, with either a factor or an outcome. Raises ValueError."""
 
-    reason: str  # begins with "upstream:", "by design:" or "ours:"
-    factor: float | None = None  # largest measured / bound
-    outcome: Outcome | None = None  # the known outcome
-    rounding: bool = False  # the error is amplified rounding, so that it may differ by ROUNDED on another processor
+    reason: str  # Begins with "upstream:", "by design:" or "ours:"
+    factor: float | None = None  # Largest measured / bound.
+    outcome: Outcome | None = None  # The known outcome.
+    rounding: bool = False  # The error is amplified rounding, so that it may differ by ROUNDED on another processor.
 
     def __post_init__(self) -> None:
         if not self.reason.startswith(BEGINNINGS):

@@ -17,12 +17,12 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, Quantity
 
-ROOM_SOFT = 2.0  # times the error of the declared softness: the accuracy of its estimate of a row's inertia
-FLAT = 0.35  # a smaller local slope is no convergence: half a decade of steps reduces the error by less than 1.5
-ENOUGH_POINTS = 3  # fewest points for an order; two points give a slope but no check of it
-ROUNDING_GROWTH = 100.0  # rounding may grow by this factor at finer steps, as the number of steps does
-NEAR_PLATEAU = 3.0  # an error within this factor of the plateau is not used for the order
-POWERS = (0.5, 8.0)  # smallest and largest power of the step with which an error may approach its limit
+ROOM_SOFT = 2.0  # Times the error of the declared softness: the accuracy of its estimate of a row's inertia.
+FLAT = 0.35  # A smaller local slope is no convergence: half a decade of steps reduces the error by less than 1.5.
+ENOUGH_POINTS = 3  # Fewest points for an order; two points give a slope but no check of it.
+ROUNDING_GROWTH = 100.0  # Rounding may grow by this factor at finer steps, as the number of steps does.
+NEAR_PLATEAU = 3.0  # An error within this factor of the plateau is not used for the order.
+POWERS = (0.5, 8.0)  # Smallest and largest power of the step with which an error may approach its limit.
 
 
 class Verdict(StrEnum):
@@ -41,11 +41,11 @@ class Fit(NamedTuple):
     """The behaviour of errors at several steps as the step goes to zero."""
 
     verdict: Verdict
-    order: float = NAN  # slope of log error over log step on the falling part
-    points: int = 0  # of the falling part
-    spread: float = NAN  # largest difference of a local slope from the order
-    plateau: float = NAN  # limit of the error at a step of zero, in the error's unit
-    uncertainty: float = NAN  # of that limit
+    order: float = NAN  # Slope of log error over log step on the falling part.
+    points: int = 0  # Of the falling part.
+    spread: float = NAN  # Largest difference of a local slope from the order.
+    plateau: float = NAN  # Limit of the error at a step of zero, in the error's unit.
+    uncertainty: float = NAN  # Of that limit.
 
 
 @dataclass(frozen=True)
@@ -62,8 +62,8 @@ class Sweep:
     spread: float
     plateau: float
     uncertainty: float
-    best: float  # the smallest error
-    best_step: float  # s
+    best: float  # The smallest error.
+    best_step: float  # s.
 
     @property
     def method(self) -> str:

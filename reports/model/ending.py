@@ -11,8 +11,8 @@ LONGEST_MESSAGE = 500  # characters of the description of an exception
 FINE = 0
 BROKEN = 1
 REFUSED = 2
-INTERRUPTED = 130  # the status that shells expect after Ctrl-C
-UNREAD = 141  # 128 + SIGPIPE: the reader of the pipe has ended
+INTERRUPTED = 130  # The status that shells expect after Ctrl-C.
+UNREAD = 141  # 128 + SIGPIPE: the reader of the pipe has ended.
 
 STATUSES = (
     f"Exit status: {FINE} fine; {BROKEN} something ran but is broken; {REFUSED} bad input or trouble with a file, and "

@@ -26,9 +26,9 @@ ROOT = Path(__file__).resolve().parents[2]
 OURS = ("reference", "engines", "reports")
 MEASURING = ("reference", "engines", "reports/model", "reports/run")  # the folders that a row depends on
 SUFFIXES = {f".{suffix.rpartition('.')[2]}" for suffix in (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)}
-INSTALLED = {"site-packages", "dist-packages"}  # names of folders whose modules count by their versions
-SCIENTIFIC = ("numpy", "scipy")  # packages on which every result depends
-SHORT, USUAL, LONG = 8, 16, 32  # hexadecimal digits for a table, the name of a file, a cache key
+INSTALLED = {"site-packages", "dist-packages"}  # Names of folders whose modules count by their versions.
+SCIENTIFIC = ("numpy", "scipy")  # Packages on which every result depends.
+SHORT, USUAL, LONG = 8, 16, 32  # Hexadecimal digits for a table, the name of a file, a cache key.
 
 
 def digest(content: str | bytes, digits: int = USUAL) -> str:

@@ -32,14 +32,14 @@ from reports.model.outcomes import Outcome, of_motion, refusal
 from reports.model.spending import spending
 
 NAN = float("nan")
-TIMED = ("sweep", "beside", "growth", "large")  # purposes whose rows are charted against their cost
-SAME_INSTANT = 1e-15  # relative difference of equal instants, from rounding
+TIMED = ("sweep", "beside", "growth", "large")  # Purposes whose rows are charted against their cost.
+SAME_INSTANT = 1e-15  # Relative difference of equal instants, from rounding.
 # CPU seconds after which a run is not repeated: the median of 70 cells was then 1.8 % above the minimum of ten runs.
 BUDGET = 0.015
 MOST_RUNS = 5
-LONG_RUN = 0.05  # s; a longer run is not repeated, since it takes only 1.01 times the minimum of three repetitions
-TRUTHS = "truths"  # the folder of exact motions beside a store, which may be deleted at any time
-SHORT_MOTION = 5e-3  # s; computing a shorter motion again is faster than reading it
+LONG_RUN = 0.05  # s; a longer run is not repeated, since it takes only 1.01 times the minimum of three repetitions.
+TRUTHS = "truths"  # The folder of exact motions beside a store, which may be deleted at any time.
+SHORT_MOTION = 5e-3  # s; computing a shorter motion again is faster than reading it.
 # Exceptions of reading a damaged file; RuntimeError is that of a part marked as encrypted.
 DAMAGES = (OSError, ValueError, KeyError, EOFError, RuntimeError, MemoryError, struct.error, zlib.error, BadZipFile)
 PARTS = ("t", "pose", "twist", "reaction")
@@ -86,8 +86,8 @@ class Measurement:
     own_coordinates: int = 0
     own_rows: int = 0
     own_freedoms: int = 0
-    cpu: float = NAN  # of stepping per simulated second
-    runs: int = 0  # number of runs, of whose times `cpu` is the minimum
+    cpu: float = NAN  # Of stepping per simulated second.
+    runs: int = 0  # Number of runs, of whose times `cpu` is the minimum.
     build: float = NAN
     limit: float = NAN  # CPU seconds; of a cell that timed out
 

@@ -19,19 +19,21 @@ if TYPE_CHECKING:
     from reference.trajectory import Trajectory
     from reports.model.measure import Measurement
 
-TORN = 0.05  # largest gap in lengths of the mechanism; much larger than the effect of softness, and shorter than a link
-BLOWN = 1e3  # gap in lengths of the mechanism above which a run has diverged
-SATURATED = 0.5  # rad; a larger angle error is no longer proportional to its cause
+TORN = (
+    0.05  # Largest gap in lengths of the mechanism; much larger than the effect of softness, and shorter than a link.
+)
+BLOWN = 1e3  # Gap in lengths of the mechanism above which a run has diverged.
+SATURATED = 0.5  # rad; a larger angle error is no longer proportional to its cause.
 
 
 class Outcome(StrEnum):
     """The outcome of a cell."""
 
-    meaning: str  # a clause for pages
-    letter: str  # in a map
-    grade: int  # 0: the errors are comparable; 1: the method declares no result; 2: a wrong motion; 3: no motion
-    colour: str  # in a map: a field of `reports.plots.theme.Theme`
-    hatch: str  # in a map
+    meaning: str  # A clause for pages.
+    letter: str  # In a map.
+    grade: int  # 0: the errors are comparable; 1: the method declares no result; 2: a wrong motion; 3: no motion.
+    colour: str  # In a map: a field of `reports.plots.theme.Theme`.
+    hatch: str  # In a map.
 
     def __new__(cls, word: str, letter: str, grade: int, colour: str, hatch: str, meaning: str) -> Self:
         outcome = str.__new__(cls, word)

@@ -39,11 +39,11 @@ class Failure:
     """
 
     title: str
-    expected: str = ""  # the behaviour according to the reference
-    cells: tuple[Cell, ...] = ()  # with the purpose "failure"
-    observations: Callable[[Material], Sequence[Observation]] | None = None  # reads the answers to `tasks`
-    remark: str = ""  # about the outcomes
-    columns: tuple[str, ...] = ()  # quantities whose largest errors are printed; if empty, a grid of angle errors
+    expected: str = ""  # The behaviour according to the reference.
+    cells: tuple[Cell, ...] = ()  # With the purpose "failure"
+    observations: Callable[[Material], Sequence[Observation]] | None = None  # Reads the answers to `tasks`.
+    remark: str = ""  # About the outcomes.
+    columns: tuple[str, ...] = ()  # Quantities whose largest errors are printed; if empty, a grid of angle errors.
     tasks: tuple[Task, ...] = ()
     context: Callable[[Material], Mapping[str, Any]] = no_context
     claims: tuple[str, ...] = ()  # expressions that hold where the remark is true (`reports.pages.claims`)
@@ -104,28 +104,30 @@ class Page:
 
     name: str
     title: str
-    lesson: str  # one sentence for the index
-    scenes: tuple[Scene, ...] = ()  # the scenes that the page teaches, each on only one page
+    lesson: str  # One sentence for the index.
+    scenes: tuple[Scene, ...] = ()  # The scenes that the page teaches, each on only one page.
     engines: tuple[Engine, ...] = ()
-    companions: tuple[Scene, ...] = ()  # scenes of other pages; a run of one includes the cells of this page's failures
-    borrowed: tuple[Cell, ...] = ()  # cells of other pages whose rows this page uses; it does not run them
+    companions: tuple[
+        Scene, ...
+    ] = ()  # Scenes of other pages; a run of one includes the cells of this page's failures.
+    borrowed: tuple[Cell, ...] = ()  # Cells of other pages whose rows this page uses; it does not run them.
     # A template, which may extend "base.md". If None: page.md in the folder with the page's name, else "base.md".
     template: Path | None = None
     failures: tuple[Failure, ...] = ()
     # Whether an engine runs a scene; an engine for a special joint is only run in scenes with this joint.
     compared: Callable[[Scene, Engine], bool] = lambda scene, engine: True
-    quantity: str = "angle"  # whose error is compared and charted
-    advised: str = ""  # the scene for which the page recommends settings; the first if empty
+    quantity: str = "angle"  # Whose error is compared and charted.
+    advised: str = ""  # The scene for which the page recommends settings; the first if empty.
     featured: Callable[[Measurement], bool] = usual_series
-    figures: Callable[[Material], Mapping[str, str]] = no_context  # SVG texts by file name without ending
-    context: Callable[[Material], Mapping[str, Any]] = no_context  # the template's own variables
-    further: Callable[[Material], Mapping[str, str]] = no_context  # Markdown files beside the page, by name
+    figures: Callable[[Material], Mapping[str, str]] = no_context  # SVG texts by file name without ending.
+    context: Callable[[Material], Mapping[str, Any]] = no_context  # The template's own variables.
+    further: Callable[[Material], Mapping[str, str]] = no_context  # Markdown files beside the page, by name.
     # (scene, method) -> the order, if it differs from the engine's declared one because of the motion.
     orders: Mapping[tuple[str, str], ConvergenceOrder] = field(default_factory=dict, compare=False)
     # (scene, method, check) -> the known deviation of this check (`reports.model.checks`).
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
-    tasks: tuple[Task, ...] = ()  # for its pictures and text, without those of `failures`
-    cells: tuple[Cell, ...] = ()  # besides the grid and the experiments
+    tasks: tuple[Task, ...] = ()  # For its pictures and text, without those of `failures`.
+    cells: tuple[Cell, ...] = ()  # Besides the grid and the experiments.
 
     def teaches(self, scene: Scene) -> bool:
         """Whether a scene with this name is on the page; its numbers may differ."""

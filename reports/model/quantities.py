@@ -22,12 +22,12 @@ class Quantity:
 
     name: str  # the field of a Measurement
     unit: str
-    rounding: float  # errors below this value have no information about a model
-    check: str  # the name of its check in the gate of theory
-    needs_truth: bool = True  # False for constraint violations, which follow from the run alone
-    is_of_joints: bool = False  # whether tables of scenes show it beside the quantity of the page
-    follows: str = ""  # the quantity whose error causes an error of this one
-    lag: float = 0.0  # delay of a first-order value in a prescribed motion, in steps
+    rounding: float  # Errors below this value have no information about a model.
+    check: str  # The name of its check in the gate of theory.
+    needs_truth: bool = True  # False for constraint violations, which follow from the run alone.
+    is_of_joints: bool = False  # Whether tables of scenes show it beside the quantity of the page.
+    follows: str = ""  # The quantity whose error causes an error of this one.
+    lag: float = 0.0  # Delay of a first-order value in a prescribed motion, in steps.
     # The largest comparable error, relative to the length of the mechanism or to the largest speed or rate of the
     # motion; for relative quantities and angles [rad] the error itself.
     largest: float = 1.0

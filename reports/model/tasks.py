@@ -59,8 +59,8 @@ class Task(ABC):
     An answer is stale when a source file of this suite changes.
     """
 
-    seconds: ClassVar[float] = 1.0  # estimated CPU time, if it does not depend on the fields
-    words: ClassVar[str] = "{0!r}"  # format string of the label; {0} is the task
+    seconds: ClassVar[float] = 1.0  # Estimated CPU time, if it does not depend on the fields.
+    words: ClassVar[str] = "{0!r}"  # Format string of the label; {0} is the task.
 
     @property
     def cost(self) -> float:

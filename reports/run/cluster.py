@@ -31,10 +31,10 @@ from reports.run.worker import process_start
 
 WORDS = re.compile(r"(?:tcp|tls)://\S+:\d+|local:([1-9]\d{0,2})")
 FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"
-ANSWERS_WITHIN = 10.0  # s for a scheduler to answer
-WORKERS_WITHIN = 120.0  # s for the first worker to connect
-CHUNK = 2.0  # expected time of a chunk [s], much longer than sending it and starting its processes
-_closing = threading.Event()  # set when the client has ended: threads of local workers then end their processes
+ANSWERS_WITHIN = 10.0  # s for a scheduler to answer.
+WORKERS_WITHIN = 120.0  # s for the first worker to connect.
+CHUNK = 2.0  # Expected time of a chunk [s], much longer than sending it and starting its processes.
+_closing = threading.Event()  # Set when the client has ended: threads of local workers then end their processes.
 
 
 @dataclass(frozen=True)

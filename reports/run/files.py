@@ -14,8 +14,8 @@ from pathlib import Path
 from reports.model.ending import FileTrouble
 
 PREFIX = ".crosscheck_"
-SOCKET_PATH = 104  # bytes; every system accepts a shorter path of a socket
-TRIES = 20  # of removing a folder, since a process that is being killed may still write into it
+SOCKET_PATH = 104  # Bytes; every system accepts a shorter path of a socket.
+TRIES = 20  # Of removing a folder, since a process that is being killed may still write into it.
 
 _folders: list[Path] = []  # the existing temporary folders of this process
 

@@ -31,8 +31,8 @@ VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
 OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
 OFFLINE = "no connection to a package index; with network it is installed once and kept"
-MOST_INSTALLED = 60  # versions and builds that stay installed; no command uses more at once
-MOST_SUGGESTED = 6  # existing versions that an error message lists
+MOST_INSTALLED = 60  # Versions and builds that stay installed; no command uses more at once.
+MOST_SUGGESTED = 6  # Existing versions that an error message lists.
 # Without it, older versions of MuJoCo import their viewer, which needs further packages.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
 

@@ -17,8 +17,8 @@ from reports.run.files import folder_for
 from reports.run.store import ELSEWHERE, Store
 from reports.run.supervisor import Supervise, Watch, WorkersLost, supervise
 
-TIME_LIMIT = 60.0  # s of CPU time for one cell; far above the cost limit of the grid, so only a hang reaches it
-LEAST = 3e-3  # s that a cell takes besides stepping
+TIME_LIMIT = 60.0  # s of CPU time for one cell; far above the cost limit of the grid, so only a hang reaches it.
+LEAST = 3e-3  # s that a cell takes besides stepping.
 
 Item = TypeVar("Item", bound=Cell | Task)
 

@@ -26,9 +26,9 @@ from reports.run.files import folder_for, temporary_folder
 
 SCHEMA = 2  # the file's `user_version`
 TABLES = {"results": "(key text primary key, row text not null)", "given": "(words text primary key)"}
-SQLITE_SUFFIXES = ("-wal", "-shm")  # of SQLite's files beside the store; recent rows are only in the first
-WAIT = 30.0  # s for another process that is writing
-COPIES = 100  # tries to copy a store while another process writes it
+SQLITE_SUFFIXES = ("-wal", "-shm")  # Of SQLite's files beside the store; recent rows are only in the first.
+WAIT = 30.0  # s for another process that is writing.
+COPIES = 100  # Tries to copy a store while another process writes it.
 ELSEWHERE = "give another folder with --results"
 PUT_ASIDE = "crosscheck run puts it aside and begins anew"
 IN_USE = f"another process is using it; wait for its end, or {ELSEWHERE}"

@@ -39,12 +39,12 @@ from reports.run.worker import (
     start_worker,
 )
 
-TICK = 0.2  # s between two readings of the clock
-IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job
-START_LIMIT = 120.0  # s of wall time until a worker is ready
-MOST_FAILED_STARTS = 5  # in a row
-PAUSE = 0.1  # s after a failed start, times the number of failed starts in a row
-MOST_WORKERS = 60  # since Windows can wait for at most 63 handles
+TICK = 0.2  # s between two readings of the clock.
+IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job.
+START_LIMIT = 120.0  # s of wall time until a worker is ready.
+MOST_FAILED_STARTS = 5  # In a row.
+PAUSE = 0.1  # s after a failed start, times the number of failed starts in a row.
+MOST_WORKERS = 60  # Since Windows can wait for at most 63 handles.
 
 Watch = Callable[[list[Any]], None]
 Answer = tuple[Any, Any, str]
@@ -60,8 +60,8 @@ class Job:
     """An item to be run."""
 
     item: Any
-    earlier: str = ""  # how the worker of the first try ended; empty before a second try
-    earlier_outside: bool = False  # whether another program killed that worker
+    earlier: str = ""  # How the worker of the first try ended; empty before a second try.
+    earlier_outside: bool = False  # Whether another program killed that worker.
 
 
 def wall_limit(limit: float) -> float:

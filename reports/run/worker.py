@@ -33,14 +33,14 @@ from reports.run.files import socket_folder
 # The keys of rows depend on the files that this module imports, and must not depend on all engines. So these two
 # modules, which import all engines, are imported by name at run time.
 GUARD, REGISTRY = "planar_crosscheck", "engines.registry"
-IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # by the fork server, for all workers
-PATIENCE = 30.0  # s to wait until a killed process has ended, which may have to write a core dump
+IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # By the fork server, for all workers.
+PATIENCE = 30.0  # s to wait until a killed process has ended, which may have to write a core dump.
 READY = b"ready"
-SPENT = 152  # 128 + SIGXCPU: exit code of a worker that ends itself since its job has used up its CPU time
-SAFE_PATH = "PYTHONSAFEPATH"  # any value keeps Python from adding the current folder to sys.path
-OURS = "crosscheck"  # the value set here; workers remove it, so that processes started by a job do not inherit it
-PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
-CHECK_INTERVAL = 0.2  # s between two readings of the worker's own CPU time
+SPENT = 152  # 128 + SIGXCPU: exit code of a worker that ends itself since its job has used up its CPU time.
+SAFE_PATH = "PYTHONSAFEPATH"  # Any value keeps Python from adding the current folder to sys.path.
+OURS = "crosscheck"  # The value set here; workers remove it, so that processes started by a job do not inherit it.
+PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2).
+CHECK_INTERVAL = 0.2  # s between two readings of the worker's own CPU time.
 # Starting a process polls all child processes and consumes the exit code of one that has ended. If several threads
 # supervise workers, it may be a worker of another thread.
 _reading = threading.Lock()
@@ -78,9 +78,9 @@ class Worker:
     connection: Connection
     ready: bool = False
     used: bool = False
-    job: Any = None  # a `supervisor.Job`; None while the worker is idle
-    awake: float = 0.0  # s since its start or the start of its job, without times at which the parent was asleep
-    cpu: float | None = None  # s of CPU time at the start of its job; None if the system does not report it
+    job: Any = None  # A `supervisor.Job`; None while the worker is idle.
+    awake: float = 0.0  # s since its start or the start of its job, without times at which the parent was asleep.
+    cpu: float | None = None  # s of CPU time at the start of its job; None if the system does not report it.
 
     def used_cpu(self) -> float:
         """CPU seconds of the current job; zero if the system does not report them."""
@@ -288,7 +288,7 @@ def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[
         if sentence := import_module(REGISTRY).mislabelled(elsewhere=False):
             result = Loss(Outcome.LOST, sentence)
         return _process_state() == before, pickle.dumps(result)
-    except BaseException as error:  # an exception of an engine is a result, also SystemExit and KeyboardInterrupt
+    except BaseException as error:  # An exception of an engine is a result, also SystemExit and KeyboardInterrupt.
         # The library of the engine may be in an inconsistent state, so this process gets no other job.
         return False, pickle.dumps(failure(error))
 

@@ -22,8 +22,8 @@ class NamedRelease:
 
     engine: str
     version: str
-    changed: str = ""  # a clause about a known change
-    source: str = ""  # the address of a page about the change
+    changed: str = ""  # A clause about a known change.
+    source: str = ""  # The address of a page about the change.
 
 
 # About one release of each minor series, and all releases with a known change, oldest first.

@@ -28,7 +28,7 @@ from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from reports.versions.trees import Trees, engines_for_trees
 
-MARK = "known to be wrong"  # our adapters write it into the sentence of each row of a faulty release
+MARK = "known to be wrong"  # Our adapters write it into the sentence of each row of a faulty release.
 # Python's exceptions for a missing name: our adapter uses one that this version lacks.
 LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
 LONGEST_LAST_LINE = 300  # characters of the last line that a process printed
@@ -41,15 +41,15 @@ class VersionRequest:
     """The cells of one version that are to be run."""
 
     scenes: tuple[Scene, ...]
-    engine: str  # a registered name, or a reference (`engines.loading`) relative to `folder`
-    modules: tuple[str, ...]  # top-level packages that must be imported from `location`
-    location: Path  # the folder of the version
+    engine: str  # A registered name, or a reference (`engines.loading`) relative to `folder`.
+    modules: tuple[str, ...]  # Top-level packages that must be imported from `location`.
+    location: Path  # The folder of the version.
     store: Path
-    variants: tuple[str, ...] = ()  # all if empty
-    every: tuple[int, ...] = (10,)  # steps between samples
-    most: float = float("inf")  # s; a cell is left out if it takes longer by its engine's formula
-    trees: bool = False  # whether the random trees are run too
-    fresh: bool = False  # whether stored cells are run again
+    variants: tuple[str, ...] = ()  # All if empty.
+    every: tuple[int, ...] = (10,)  # Steps between samples.
+    most: float = float("inf")  # s; a cell is left out if it takes longer by its engine's formula.
+    trees: bool = False  # Whether the random trees are run too.
+    fresh: bool = False  # Whether stored cells are run again.
     folder: Path = Path(".")
     limit: float = TIME_LIMIT
 

@@ -24,11 +24,11 @@ from reports.versions.trees import Trees
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
-WRONG_TREE = 0.01  # error relative to the largest acceleration above which a tree counts as wrong
+WRONG_TREE = 0.01  # Error relative to the largest acceleration above which a tree counts as wrong.
 # Relative error of accelerations below which the error of the finite difference and of the solver dominate.
 ACCELERATION_ROUNDING = 1e-3
-SAME_COST = 0.1  # relative difference of two CPU times that counts as noise
-LONGEST_SENTENCE = 200  # characters
+SAME_COST = 0.1  # Relative difference of two CPU times that counts as noise.
+LONGEST_SENTENCE = 200  # characters.
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Entry:
     quantity: str
     error: float  # largest of `quantity`, relative to the largest acceleration for random trees; NaN without a motion
     outcome: str
-    cpu: float  # s per simulated second; NaN for random trees
-    sentence: str  # the reason for a missing error; for random trees the number of wrong ones
+    cpu: float  # s per simulated second; NaN for random trees.
+    sentence: str  # The reason for a missing error; for random trees the number of wrong ones.
 
     @property
     def comparable(self) -> bool:

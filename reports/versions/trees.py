@@ -20,8 +20,8 @@ from reports.model.tasks import Task, Values
 from reports.search.parts import Recipe, RecipeBody, RecipeLink
 from reports.search.recipe import build
 
-TREE_STEP = 1e-5  # of the mechanism's time scale; the relative error of a finite difference is about as large
-TREE_STEPS = 2  # since the first step of a velocity-level solver lacks the velocity term of the joints
+TREE_STEP = 1e-5  # Of the mechanism's time scale; the relative error of a finite difference is about as large.
+TREE_STEPS = 2  # Since the first step of a velocity-level solver lacks the velocity term of the joints.
 TREE_SEED = 12
 
 

@@ -262,7 +262,7 @@ def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_tha
     assert result.own_errors.worst["reaction"] < 0.01
     assert result.advised is not None
     off = np.abs(result.advised.run.reaction - truth.reaction)[:, ~mechanism.is_angular].max()
-    assert off < 1e-5 * forces.max()  # the compliance that the stiffest loop keeps
+    assert off < 1e-5 * forces.max()  # The compliance that the stiffest loop keeps.
     # The measure compares vectors of two components, and here single components.
     assert off / forces.max() / 2 < result.advised.reaction < 2 * off / forces.max()
     wrong = truth.reaction + 0.1 * mechanism.is_angular * np.abs(truth.reaction).max() * result.facts.length

@@ -231,8 +231,8 @@ def test_a_worse_build_is_reported_and_a_dearer_one_above_a_limit_and_its_output
     assert (line["verdict"], document["status"]) == ("WORSE", 1)
     assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
-    assert not (here / "crosscheck-results").exists()  # a build may change: nothing of it is stored
-    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # as from a notebook
+    assert not (here / "crosscheck-results").exists()  # A build may change: nothing of it is stored.
+    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # As from a notebook.
     assert [column.trouble for column in comparison.columns] == ["", ""]
     assert comparison.complaint == ""
     # A toy has the same cost whatever it takes.
