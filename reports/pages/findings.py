@@ -152,12 +152,12 @@ class Finding:
 
 
 def error_at(rows: Rows, step: float, name: str) -> float:
-    """The error of a quantity at a step [s], of a failed run too; NaN if there is none."""
+    """The error of a quantity at a step [s], of a failed run too; NaN if no row has this step."""
     return next((error for row_step, error in rows.points(name) if is_step(row_step, step)), math.nan)
 
 
 def least(rows: Rows, name: str) -> float:
-    """The least error of a quantity, failed runs included; NaN if there is none."""
+    """The least error of a quantity, failed runs included; NaN without rows."""
     return min((error for _, error in rows.points(name)), default=math.nan)
 
 

@@ -101,7 +101,7 @@ Points = tuple[tuple[float, float], ...]
 
 LEAST_OPACITY = 0.12
 LINE_BREAK = np.full((1, 2), np.nan)
-BLOCK_SIZE = 0.045  # side of the rectangle that stands for a body with one joint point, as a fraction of the picture
+BLOCK_SIZE = 0.045  # side of a body with one joint point, drawn as a rectangle, as a fraction of the picture
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
 
 
 def _scenes_with_lines(rows: Sequence[Measurement]) -> list[str]:
-    """The scenes in which some method has at least two points; all scenes if there is none."""
+    """The scenes in which some method has at least two points; else all scenes."""
     scenes = list(dict.fromkeys(row.scene for row in rows))
     with_lines = {scene for (scene, _, _), members in groups(rows).items() if len(members) > 1}
     return [scene for scene in scenes if scene in with_lines] or scenes

@@ -265,7 +265,7 @@ def equal_cost(entries: Iterable[PageRows]) -> str:
 
 
 def within_budget(line: EngineLine, column: Column) -> str:
-    """The least error of a column within CPU_BUDGET, or why there is none."""
+    """The least error of a column within CPU_BUDGET, or the reason why no error counts."""
     methods = [rows for _, rows in line.columns[column]]
     least = min((error_within(rows, line.quantity, ACCEPTED_CPU) for rows in methods), default=math.inf)
     if math.isfinite(least):

@@ -220,6 +220,6 @@ def _slug(name: str) -> str:
 
 
 def program(scene: str, method: str) -> str:
-    """The text of a method's program file; empty if there is none."""
+    """The text of a method's program file; empty if the file does not exist."""
     path = RESULTS / file_of(scene, method)
     return path.read_text(encoding="utf-8") if path.is_file() else ""

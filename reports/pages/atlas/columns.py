@@ -26,7 +26,7 @@ FILE = "atlas.csv"
 FORCE_SAMPLES = 20
 # Letter of a cell that was not run, because the neighbours above and below have the same outcome.
 NOT_RUN = "="
-# If two outcomes have the same letter, the letter stands for the first of them.
+# If two outcomes have the same letter, it is read as the first of these outcomes.
 BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}
 RunCells = Callable[[list[Cell]], Mapping[Cell, Measurement]]
 

@@ -85,7 +85,7 @@ FEW_ITERATIONS = tuple(
     for count in (1, 2, 5, 20)
 )
 
-# The crank's state is overwritten after each step. The same drive with the loop as shipped is in `mujoco.DRIVES`.
+# The crank's state is overwritten after each step. `mujoco.DRIVES` has this drive with the loop as shipped.
 OVERWRITTEN_STIFF = replace(mujoco.TUNED, variant="tuned, overwritten crank", drive="overwrite")
 
 

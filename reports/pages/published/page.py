@@ -105,7 +105,7 @@ def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
 
 
 def largest_step(answer: Answer, name: str) -> float | None:
-    """The largest of NEWTON_STEPS [s] such that it and all smaller steps meet a bound; None if there is none."""
+    """The largest of NEWTON_STEPS [s] such that it and all smaller steps meet a bound; None if no step does."""
     largest = None
     for step, measure in sorted(zip(NEWTON_STEPS, answer.array(name), strict=True)):
         if not measure < NEWTON_BOUNDS[name]:

@@ -293,7 +293,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def crossing(one: MethodSeries | None, other: MethodSeries | None) -> tuple[int, int] | None:
-    """Two neighbouring sizes between which `one` becomes more expensive than `other`; None if there are none."""
+    """Two neighbouring sizes between which `one` becomes more expensive than `other`; None if it never does."""
     if one is None or other is None:
         return None
     pairs = [(p.size, p.step, q.step) for p in one.points if (q := other.at(p.size))]

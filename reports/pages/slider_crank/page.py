@@ -65,7 +65,7 @@ LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 
 def delay(material: Material) -> dict[str, Any]:
-    """`later`: by how much the time increases from the second to the last of LEAVING [s]. `nearer`: log 100."""
+    """`later`: the difference of the times [s] of the last two of LEAVING. `nearer`: log 100."""
     far, near = (material.finished(task) for task in LEAVING[-2:])
     later = near.number("when") - far.number("when") if far and near else UNMEASURED
     return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}

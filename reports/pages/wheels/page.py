@@ -87,7 +87,7 @@ def folding(material: Material) -> list[Observation]:
 
 
 def lateness(material: Material) -> dict[str, Any]:
-    """`late`: by how much the trailer folds later in the naive method [s], at the larger and at the smaller step."""
+    """`late`: the delays of folding in the naive method [s], at the larger and at the smaller step."""
     truth = material.finished(REFERENCE)
     exact = crossing(truth.array("t"), bend_of(truth.array("pose")), FOLDED) if truth else None
     motions = material.motions(cell for cell in RUNS if cell.engine == pymunk.DEFAULT)

@@ -63,7 +63,7 @@ class ModelCheck(Task):
 
 
 def coarsest_enough(checked: CheckResult) -> SettingRun | None:
-    """The setting with the largest step whose error is within the tolerance; None if there is none."""
+    """The setting with the largest step whose error is within the tolerance; None if no error is."""
     enough = [setting for setting in checked.table if setting.error <= checked.tolerance]
     return max(enough, key=lambda setting: setting.change.dt, default=None)
 
