@@ -29,7 +29,7 @@ from __future__ import annotations
 import math
 import os
 import platform
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, ClassVar
 
@@ -37,39 +37,30 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from engines.capability import Capability, Lack
+from engines.capability import Capability
 from engines.contract import (
-    EXACT,
     ConvergenceOrder,
-    Enforcement,
     Instant,
     NotDeclared,
-    Regularisation,
-    Size,
     Unsupported,
 )
-from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco import declared
-from engines.mujoco.engine import MuJoCo
-from engines.mujoco.methods import DEFAULT as C_DEFAULT
 from engines.mujoco.methods import TUNED as C_TUNED
-from engines.mujoco.model import MUJOCO_CAPABILITY, MuJoCoModel
+from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.releases import full_inertia
 from engines.mujoco.running import MAX_RESIDUAL, residual_warning
+from engines.on_device import MuJoCoOnDevice, chosen_device, size_of, without_contacts
 from engines.sampling import sampled
-from engines.single_run import ExtraEngine, Recorded, quiet
+from engines.single_run import Recorded, quiet
 from engines.tree import Tree, spanning_tree
 from engines.units import power_of_two
 from engines.user_cache import cache_folder
-from reference.checks import Name, validated
-from reference.joints import Joint, Rod, Skate
+from reference.checks import validated
+from reference.joints import Rod
 from reference.mechanism import Mechanism
-from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
-# CPU time of a compiled evaluation with three bodies [s].
-MJX_EVALUATION_COST = 50e-6
 # The compliance R of the stiffest row at the start, relative to mjMINVAL, the smallest R in MuJoCo and MJX. The margin
 # is for a gap of a millimetre, which halves R as shipped, and for the unit's rounding to a power of two.
 LEAST_COMPLIANCE = 4.0
@@ -81,26 +72,16 @@ NO_VELOCITY_TERM = RunWarning(
 
 
 @dataclass(frozen=True)
-class Mjx(ExtraEngine):
-    """An engine in the sense of `engines.Engine`; `settings` is the MuJoCo method with the same model and options."""
+class Mjx(MuJoCoOnDevice):
+    """An engine in the sense of `engines.Engine`; the fields are those of its base."""
 
     name = "mjx"
+    title: ClassVar[str] = "MJX"
+    evaluation_cost: ClassVar[float] = 50e-6
     packages = ("mujoco-mjx", "jax", "mujoco-core")
     modules: ClassVar[tuple[str, ...]] = ("jax", "mujoco.mjx")
     apart: ClassVar[str] = "pip install --no-deps mujoco-mjx"
-    build_time: ClassVar[float] = 20.0
-    capability: ClassVar[Capability] = Capability(
-        "mjx",
-        tuple(kind for kind in MUJOCO_CAPABILITY.joints if kind not in (Skate, Roll)),
-        MUJOCO_CAPABILITY.forces,
-        lacks={
-            kind: Lack(f"a {kind.__name__.lower()} needs a contact, and our adapter of MJX builds none")
-            for kind in (Skate, Roll)
-        },
-    )
-
-    variant: Name
-    settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)
+    capability: ClassVar[Capability] = without_contacts("mjx", "MJX")
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
@@ -110,21 +91,7 @@ class Mjx(ExtraEngine):
             return NotDeclared("MJX leaves out the velocity term of loops, which no step makes smaller")
         if tree.closed:  # the rows are sums of angles without velocity terms
             return self.settings.order(mechanism)
-        if turns_steadily(mechanism) or is_prescribed(mechanism):
-            return ConvergenceOrder(EXACT)
-        return ConvergenceOrder(4 if self.settings.integrator == "RK4" else 1, gap=EXACT, slip=EXACT)
-
-    @validated
-    def step_cost(self, mechanism: Mechanism) -> float:
-        return MJX_EVALUATION_COST * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
-
-    @validated
-    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        return self.settings.enforcement(joint, mechanism)
-
-    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """The regularisation of MuJoCo with these settings, which has the velocity term that MJX omits."""
-        return self.settings.regularisation(mechanism, dt)
+        return self.order_without_loops(mechanism)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
@@ -148,15 +115,13 @@ class Mjx(ExtraEngine):
 
     def model(self, mechanism: Mechanism, dt: float) -> DeviceModel:
         """The model on the device before compilation; raises Unsupported."""
-        model = self.settings.model(mechanism, dt)
+        model = self.compiled(mechanism, dt)
         if unit := _smallest_unit(model):
-            model = self.settings.model(mechanism, dt, unit=unit)
-        if model.hooks:
-            raise Unsupported("some rows are written by callbacks of MuJoCo's C code, which MJX does not run")
+            model = self.compiled(mechanism, dt, unit)
         try:
             return DeviceModel(model)
         except NotImplementedError as reason:
-            raise Unsupported(f"MJX does not run this model: {' '.join(str(reason).split())}") from None
+            raise self.refusal(reason) from None
         except (RuntimeError, AssertionError):
             platforms = os.environ.get("JAX_PLATFORMS")
             raise Unsupported(f"JAX finds no device to run on here: JAX_PLATFORMS is {platforms!r}") from None
@@ -182,7 +147,7 @@ def lacks_velocity_terms(tree: Tree) -> bool:
 @cache
 def _programs() -> tuple[Any, Any, Any]:
     """The module mjx and the functions steps(model, data, count) and forward(model, data); imports JAX."""
-    os.environ.setdefault("JAX_PLATFORMS", "cpu")
+    os.environ.setdefault("JAX_PLATFORMS", chosen_device())
     os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1")
     with quiet():  # JAX prints that another back end is not installed
         import jax
@@ -210,8 +175,7 @@ class DeviceModel:
     def __init__(self, model: MuJoCoModel) -> None:
         self.mujoco, (self.mjx, self._steps, self._forward) = model, _programs()
         self._held, self._data = self.mjx.put_model(model.compiled), model.start()
-        rows = model.rows + len(model.driven)
-        self.size = Size(model.compiled.nbody - 1, model.compiled.nq, rows, self._data.nefc)
+        self.size = size_of(model, self._data.nefc)
 
     def accelerations(self, model: MuJoCoModel, data: Any) -> Array:
         """The accelerations (nv,) by MJX in the state of a mujoco.MjData of `model`.

@@ -221,6 +221,9 @@ ORDER_SPACING, ORDER_SAMPLES = 0.02, 3  # [s] between samples, and their number
 ORDER_MARGIN = 2.5
 # Relative error by rounding, or of a drive whose rate is held by an inertia 10^8 times the mechanism's.
 SMALLEST_ERROR = 1e-8
+# Roundings of an engine of lower precision that an error may have: about one in each of the steps of these checks adds
+# up to some, since they have either sign.
+LOW_PRECISION_STEPS = 10
 # Gap over acceleration [s^2] of joints that count as rigid: at 10 m/s^2 the gap is 1 nm, below SMALLEST_ERROR.
 RIGID = 1e-10
 
@@ -236,7 +239,8 @@ def _has_its_order(subject: CheckedEngine, world: World, name: str, quantity: st
     steps = [f"{ORDER_SPACING / every:.2g}" for every in STEP_DIVISORS]
     ratios = [(every / STEP_DIVISORS[-1]) ** order for every in STEP_DIVISORS[:-1]]
     expected = max(error * ratio for error, ratio in zip(errors, ratios, strict=False))
-    bound = max(ORDER_MARGIN * expected, SMALLEST_ERROR * (1 + _largest(world.mechanism.twist)))
+    smallest = SMALLEST_ERROR + LOW_PRECISION_STEPS * subject.engine.precision
+    bound = max(ORDER_MARGIN * expected, smallest * (1 + _largest(world.mechanism.twist)))
     require(
         errors[-1] <= bound,
         f"errors of {', '.join(f'{error:.2g}' for error in errors)} at steps of {', '.join(steps)} s",

@@ -213,6 +213,7 @@ ENGINE_NAMES = {
     "mjx": "MJX",
     "bullet": "Bullet",
     "drake": "Drake",
+    "mujoco-warp": "MuJoCo Warp",
     EXACT_SOLVER: "plain code, exact multipliers",
 }
 

@@ -1,0 +1,174 @@
+"""MuJoCo Warp under test: MuJoCo's model, stepped by kernels of NVIDIA Warp in single precision, here on the processor.
+
+The model is that of our MuJoCo adapter, as in `engines.mjx`. MuJoCo Warp has the velocity term J-dot v of loops, which
+MJX leaves out ([mujoco_warp#1294](https://github.com/google-deepmind/mujoco_warp/pull/1294)). In 4.0.0 the bodies'
+velocities in it are those of the evaluation before, since `fwd_position` makes the constraints before `fwd_velocity`
+computes the velocities. Runs with loops have a warning. For reactions our adapter evaluates a state twice, so that the
+velocities belong to it.
+
+A step is captured once as a graph and launched again, as its documentation recommends for a GPU
+(`mujoco.readthedocs.io`, "MuJoCo Warp"). Warp 1.19 captures on the processor too: a step of Euler of the free four-bar
+then takes 17 us instead of 3 ms, and has the same bits.
+
+Rounding decides the settings of *tuned*. In single precision a loop is open by about 6e-8 m, and its stiffness makes
+an acceleration of that: 2.5e-3 m/s^2 with a time constant of 5 ms, or 0.4 % of the first acceleration of a four-bar. A
+small compliance also makes the solver's equations ill-conditioned. So the stiffest `solimp`, 0.9999, is not the best:
+with it the free four-bar (RK4, 1 ms) is wrong by 2.1e-4 rad, and with 0.997 and a time constant of 2.5 steps by 4e-5
+rad. From 0.99 to 0.999 the errors differ by less than a factor of three. `put_model` raises the solver's tolerance to
+1e-6 or more; without a tolerance a step takes ten times as long and is no better. Our adapter writes the tolerance
+after `put_model`, relative to the inertia of the coordinates that are not driven (`engines.mujoco.model`): otherwise
+the large inertia of a drive would end the solver at once.
+
+Warp compiles kernels when they are first used: minutes for the first model on a computer, and seconds for a model of
+another structure. It keeps them in its own cache folder, see its variable WARP_CACHE_PATH.
+
+The package mujoco-warp requires the package mujoco, which overwrites the files of mujoco-core. So install it without
+dependencies: pip install --no-deps mujoco-warp. Newton's solver `SolverMuJoCo` is this package.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.capability import Capability
+from engines.contract import ConvergenceOrder, NotDeclared, Unsupported
+from engines.mujoco.methods import TUNED as C_TUNED
+from engines.mujoco.model import MuJoCoModel
+from engines.mujoco.stiffness import TiedToStep
+from engines.on_device import MuJoCoOnDevice, chosen_device, size_of, without_contacts
+from engines.sampling import sampled
+from engines.single_run import Recorded, quiet
+from engines.tree import spanning_tree
+from reference.checks import validated
+from reference.mechanism import Mechanism
+from reference.trajectory import RunWarning
+
+Array = NDArray[np.float64]
+# The least tolerance that `put_model` leaves.
+LEAST_TOLERANCE = 1e-6
+LATE_VELOCITY_TERM = RunWarning(
+    "upstream: the velocity term of loops in MuJoCo Warp has the bodies' velocities of the evaluation before",
+    "known fault",
+    "upstream",
+)
+
+
+@dataclass(frozen=True)
+class StiffInSinglePrecision(TiedToStep):
+    """The stiffness at which the compliance of a loop costs about as much as rounding; the module gives the numbers."""
+
+    impedance: ClassVar[tuple[float, float, float, float, float]] = (0.997, 0.997, 0.001, 0.5, 1.0)
+    steps: float = 2.5
+
+
+@dataclass(frozen=True)
+class MuJoCoWarp(MuJoCoOnDevice):
+    """An engine in the sense of `engines.Engine`; the fields are those of its base."""
+
+    name = "mujoco-warp"
+    title: ClassVar[str] = "MuJoCo Warp"
+    evaluation_cost: ClassVar[float] = 17e-6
+    packages = ("mujoco-warp", "warp-lang", "mujoco-core")
+    modules: ClassVar[tuple[str, ...]] = ("warp", "mujoco_warp")
+    apart: ClassVar[str] = "pip install --no-deps mujoco-warp"
+    precision: ClassVar[float] = 2.0**-23
+    capability: ClassVar[Capability] = without_contacts("mujoco-warp", "MuJoCo Warp")
+
+    @validated
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+        """The integrator's where there is no loop."""
+        if spanning_tree(mechanism).closed:
+            return NotDeclared("the stiffness of loops multiplies the rounding of single precision")
+        return replace(self.order_without_loops(mechanism), amplified=self.precision / np.finfo(float).eps)
+
+    def model(self, mechanism: Mechanism, dt: float) -> WarpModel:
+        model = self.compiled(mechanism, dt)
+        try:
+            return WarpModel(model, self.settings.tolerance)
+        except NotImplementedError as reason:
+            raise self.refusal(reason) from None
+
+    def stricter(self, mechanism: Mechanism) -> None:
+        """None: the tolerance is near the rounding already."""
+
+
+@cache
+def load_packages(device: str) -> tuple[Any, Any]:
+    """(warp, mujoco_warp); raises Unsupported where Warp has no such device."""
+    with quiet():  # Warp prints that there is no driver of CUDA
+        import warp
+
+        warp.config.log_level = warp.LOG_ERROR
+        warp.init()
+        import mujoco_warp
+
+        try:
+            warp.get_device(device)
+        except (RuntimeError, ValueError):
+            raise Unsupported(f"Warp finds no device {device!r} here") from None
+    return warp, mujoco_warp
+
+
+class WarpModel:
+    """MuJoCo's model, and the same on the device."""
+
+    def __init__(self, model: MuJoCoModel, tolerance: float) -> None:
+        """tolerance: that of the settings, before it was scaled by the inertia that is free."""
+        self.model, self.device = model, chosen_device()
+        self.warp, self.mujoco_warp = load_packages(self.device)
+        with self.warp.ScopedDevice(self.device):
+            self.start = model.start()
+            self.held = self.mujoco_warp.put_model(model.compiled)
+            share = model.compiled.opt.tolerance / tolerance if tolerance else 1.0
+            self.held.opt.tolerance.fill_(share * max(tolerance, LEAST_TOLERANCE))
+        self.size = size_of(model, self.start.nefc)
+
+    def _data(self) -> Any:
+        return self.mujoco_warp.put_data(self.model.compiled, self.start)
+
+    def record(self, samples: int, every: int) -> Recorded:
+        with quiet(), self.warp.ScopedDevice(self.device):
+            return self._record(samples, every)
+
+    def _record(self, samples: int, every: int) -> Recorded:
+        warp, step = self.warp, self.mujoco_warp.step
+        step(self.held, self._data())  # compiles or loads the kernels
+        data = self._data()
+        with warp.ScopedCapture() as capture:
+            step(self.held, data)
+
+        def advance(count: int) -> None:
+            for _ in range(count):
+                warp.capture_launch(capture.graph)
+
+        position, velocity, acceleration = np.full((3, samples + 1, self.model.compiled.nq), np.nan)
+
+        def add_state(sample: int) -> None:
+            position[sample], velocity[sample] = data.qpos.numpy()[0], data.qvel.numpy()[0]
+
+        stepping = sampled([every] * samples, advance, add_state)
+        for sample in range(samples + 1):
+            acceleration[sample] = self._acceleration(data, position[sample], velocity[sample])
+        motion = self.model.tree.motion(*(v[:, self.model.address] for v in (position, velocity, acceleration)))
+        warnings = (LATE_VELOCITY_TERM,) if self.model.tree.loops else ()
+        return Recorded(*motion, stepping, *self.model.inertias_and_gravity(), warnings)
+
+    def _acceleration(self, data: Any, position: Array, velocity: Array) -> Array:
+        if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
+            return np.full_like(position, np.nan)
+        data.qpos.assign(position[None].astype(np.float32))
+        data.qvel.assign(velocity[None].astype(np.float32))
+        for _ in range(2):  # the first computes the velocities that the second one's velocity term needs
+            data.qacc_warmstart.zero_()  # in single precision the solver's answer depends on its first guess
+            self.mujoco_warp.forward(self.held, data)
+        return data.qacc.numpy()[0].astype(np.float64)
+
+
+DEFAULT = MuJoCoWarp("default")
+TUNED = MuJoCoWarp("tuned", replace(C_TUNED, stiffness=StiffInSinglePrecision()))
+VARIANTS = (DEFAULT, TUNED)
