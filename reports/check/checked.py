@@ -121,8 +121,6 @@ def _largest(values: Array) -> float:
 
 @dataclass(frozen=True)
 class Applied:
-    """The file that --apply has written, and a run of it."""
-
     file: str
     words: str  # Its settings.
     error: float  # Largest error of the run.
@@ -185,7 +183,6 @@ class CheckResult:
 
     @property
     def advised(self) -> SettingRun | None:
-        """The cheapest setting within the tolerance."""
         return cheapest(self.table, self.tolerance)
 
     @property

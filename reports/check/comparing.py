@@ -23,8 +23,6 @@ from reports.plots.theme import LIGHT, new_figure, settings, svg
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture as SVG, which a notebook shows."""
-
     title: str
     svg: str
 

@@ -23,8 +23,6 @@ MOST_DIRECTIONS = 60  # Free directions for which the eigenvalues are computed.
 
 @dataclass(frozen=True)
 class Facts:
-    """Facts of a mechanism and of its ideal motion."""
-
     bodies: int
     joints: int
     forces: int
@@ -43,7 +41,6 @@ class Facts:
 
 
 def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
-    """Compute the facts; `motion` is the ideal motion."""
     freedoms = mechanism.degrees_of_freedom()
     independent = 3 * len(mechanism.bodies) - freedoms[1]
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, 3 * len(mechanism.bodies)))

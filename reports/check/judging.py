@@ -236,7 +236,6 @@ class Errors:
 
     @property
     def worst(self) -> dict[str, float]:
-        """The largest error of each quantity; NaN if it is unknown."""
         return {name: float(np.fmax.reduce(values)) for name, values in self.of.items()}
 
     @property

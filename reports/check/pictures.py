@@ -27,8 +27,6 @@ BAR_STYLE: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 @dataclass(frozen=True)
 class Pose:
-    """The lines of a drawn pose."""
-
     bars: Lines  # A polygon for each body through its joints.
     links: Lines  # Rods and springs.
     rails: Lines  # Guides of slides on the ground.
@@ -36,8 +34,6 @@ class Pose:
 
 @dataclass(frozen=True)
 class PictureData:
-    """The numbers of both pictures."""
-
     t: list[float]  # s.
     own: Curves  # Errors of the user's settings at `t`.
     judge_t: list[float]
@@ -56,7 +52,6 @@ class PictureData:
 
 
 def picture_data_from_text(text: str) -> PictureData:
-    """The inverse of `PictureData.as_text`."""
     data = json.loads(text)
     return PictureData(**{**data, "ideal": Pose(**data["ideal"]), "found": Pose(**data["found"])})
 

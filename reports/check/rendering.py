@@ -22,8 +22,6 @@ img { max-width: 100%; height: auto }
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the report."""
-
     title: str
     sentences: tuple[str, ...] = ()
     facts: tuple[tuple[str, str], ...] = ()  # (label, sentence).
@@ -67,7 +65,6 @@ def markdown(name: str, sections: Sequence[Section], files: dict[str, str]) -> s
 
 
 def html(name: str, sections: Sequence[Section]) -> str:
-    """The report as one self-contained HTML page."""
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(name)}</title>'
         f"<style>{STYLE}</style></head><body>\n{body(name, sections)}\n</body></html>\n"

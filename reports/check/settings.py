@@ -33,8 +33,6 @@ class SweepPlan:
 
 @dataclass(frozen=True, eq=False)
 class SettingRun:
-    """The run of one setting."""
-
     change: Change
     errors: Errors
     run: Trajectory

@@ -26,7 +26,6 @@ number = partial(tables.number, infinite="gave up")
 
 
 def answer_section(result: CheckResult) -> Section:
-    """The first screen of the report."""
     size = f"{result.facts.length:.3g} m, the length of the mechanism"
     cost = f"{number(1e3 * result.own.stepping)} ms of CPU time for {result.duration:g} s"
     facts = (
@@ -47,7 +46,6 @@ def answer_section(result: CheckResult) -> Section:
 
 
 def report_sections(result: CheckResult, pictures: dict[str, tuple[str, str]] | None = None) -> tuple[Section, ...]:
-    """All sections of the report."""
     pictures = pictures or {}
     return (
         replace(answer_section(result), title="Answer"),
@@ -68,7 +66,6 @@ def summary_row(result: CheckResult) -> tuple[str, ...]:
 
 
 def _cause(parts: ErrorParts) -> str:
-    """The main cause of the error."""
     if parts.step == 0 or math.isinf(parts.step):
         return "-" if parts.step == 0 else "gave up"
     if not parts.divided:
@@ -184,7 +181,6 @@ def _written(result: CheckResult) -> str:
 
 
 def _front(result: CheckResult) -> tuple[tuple[str, ...], ...]:
-    """Rows of the user's settings and of the Pareto front."""
     rows_shown = [result.table[0]]
     for setting in pareto_front(result.table):
         if setting is not result.table[0] and not setting.error > BETTER_ERROR * rows_shown[-1].error:

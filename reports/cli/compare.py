@@ -115,7 +115,6 @@ def print_comparison(console: Terminal, builds: BuildComparison) -> None:
 
 
 def _cells(difference: Difference) -> list[str | float]:
-    """(quantity and unit, step, value before, value after)."""
     name = difference.quantity
     label = name if name in ("outcome", "reaction_rows") else f"{name} [{quantity(name).unit}]"
     return [label, difference.after.step, difference.value(difference.before), difference.value(difference.after)]

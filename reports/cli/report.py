@@ -102,7 +102,6 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
 
 
 def material_of(page: Page, store: Store) -> Material:
-    """The stored rows and answers of a page."""
     return Material(store.get(selection.shown_cells(page)), store.answers(all_tasks(page)))
 
 
@@ -245,7 +244,6 @@ def search_files(results: Path, publish: bool = False) -> dict[str, str]:
 
 
 def published() -> Path:
-    """The folder of the published results in a checkout."""
     return CHECKOUT / "reports" / "results"
 
 

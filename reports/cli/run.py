@@ -104,7 +104,6 @@ class Selection:
 
     @property
     def references(self) -> list[str]:
-        """The selected references as texts for a store."""
         return [reference.text() for reference in self.choice.known.references]
 
     @property

@@ -139,7 +139,6 @@ def chosen_subjects(
 
 
 def _shrink_and_write(terminal: Terminal, run: Search, found: list[CaseResult], folder: Path) -> None:
-    """Shrink some findings of each check, and write them as recipes and scripts."""
     if not any(case.result.faults for case in found):
         terminal.tell("Nothing was found.")
         return

@@ -96,7 +96,6 @@ def show(
 
 
 def _print_scene(terminal: Terminal, scene: Scene, rows: Mapping[Cell, Measurement], quantity: str) -> None:
-    """Print all runs of a scene, their orders and plateaus, and the sufficient settings for this quantity."""
     grid = [row for cell, row in rows.items() if cell.scene == scene and cell.purpose in ("sweep", "usual")]
     beside = [row for cell, row in rows.items() if cell.scene == scene and cell.purpose == "beside"]
     judged_rows = judged(grid, quantity)

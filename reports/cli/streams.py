@@ -24,7 +24,6 @@ def written() -> Iterator[None]:
 
 
 def said(words: str) -> None:
-    """Print a line on the standard error at once."""
     print(f"crosscheck: {visible(words)}", file=sys.stderr, flush=True)
 
 

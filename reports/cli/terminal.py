@@ -51,7 +51,6 @@ class Terminal(Console):
         self.print(visible(sentence), markup=False, highlight=False, soft_wrap=True)
 
     def tell(self, sentence: str) -> None:
-        """Add a sentence to the results."""
         if self.form == "json":
             self.document["sentences"].append(sentence)
         elif self.form == "markdown":

@@ -152,7 +152,6 @@ def _table(name: str, columns: list[VersionColumn]) -> ReleaseTable:
 
 
 def _print(console: Terminal, table: ReleaseTable, name: str) -> None:
-    """Print the errors, or outcomes, in a table with a row for each scene and method and a column for each version."""
     numbers = table.versions(name)
     lines: dict[tuple[str, str, str], dict[str, str | float]] = {}
     for entry in table.entries:

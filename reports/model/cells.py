@@ -70,7 +70,6 @@ class Cell(Valid):
 
     @property
     def step(self) -> float:
-        """The step of the engine [s]."""
         return self.scene.duration / self.sample_count / self.every
 
     @property
@@ -180,13 +179,11 @@ def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDE
 
 @lru_cache(maxsize=4096)
 def _promised_order(scene: Scene, engine: Engine) -> float:
-    """The declared order of the poses; 0 without one."""
     promise = _call(engine, "order", scene)
     return promise.order if isinstance(promise, ConvergenceOrder) else 0.0
 
 
 def is_step(step: float, wanted: float) -> bool:
-    """Whether two steps [s] count as equal."""
     return abs(step - wanted) <= SAME_STEP * wanted
 
 

@@ -26,8 +26,6 @@ POWERS = (0.5, 8.0)  # Smallest and largest power of the step with which an erro
 
 
 class Verdict(StrEnum):
-    """The behaviour of the error as the step goes to zero."""
-
     FALLS = "falls"
     ROUNDING = "reaches rounding"
     PLATEAU = "plateau"
@@ -38,8 +36,6 @@ class Verdict(StrEnum):
 
 
 class Fit(NamedTuple):
-    """The behaviour of errors at several steps as the step goes to zero."""
-
     verdict: Verdict
     order: float = NAN  # Slope of log error over log step on the falling part.
     points: int = 0  # Of the falling part.
@@ -76,7 +72,6 @@ class Sweep:
 
 
 def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Slopes of log error over log step between neighbouring steps."""
     return np.diff(np.log(errors)) / np.diff(np.log(steps))
 
 
@@ -192,7 +187,6 @@ def groups(rows: Iterable[Measurement]) -> dict[tuple[str, str, str], list[Measu
 
 
 def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTITIES) -> tuple[Sweep, ...]:
-    """The sweeps of these quantities in the groups of the rows."""
     quantities = tuple(quantities)
     out = []
     for (scene, engine, variant), members in groups(rows).items():
@@ -206,7 +200,6 @@ def sweeps(rows: Iterable[Measurement], quantities: Iterable[Quantity] = QUANTIT
 
 
 def by_method(found: Iterable[Sweep], quantity: str) -> Mapping[tuple[str, str, str], Sweep]:
-    """(scene, engine, variant) -> sweep of the quantity."""
     return {(s.scene, s.engine, s.variant): s for s in found if s.quantity.name == quantity}
 
 

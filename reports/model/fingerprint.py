@@ -32,7 +32,6 @@ SHORT, USUAL, LONG = 8, 16, 32  # Hexadecimal digits for a table, the name of a 
 
 
 def digest(content: str | bytes, digits: int = USUAL) -> str:
-    """The first hexadecimal digits of the SHA-256 of a text (UTF-8) or of bytes."""
     data = content.encode(errors="replace") if isinstance(content, str) else content
     return hashlib.sha256(data).hexdigest()[:digits]
 
@@ -76,7 +75,6 @@ def _rivals(packages: Iterable[str]) -> set[str]:
 
 
 def _parts(values: Iterable[Any]) -> Iterator[Any]:
-    """These values, and recursively the values in their fields and containers."""
     for value in values:
         yield value
         if dataclasses.is_dataclass(value) and not isinstance(value, type):
@@ -149,5 +147,4 @@ def _required(name: str) -> tuple[str, ...] | None:
 
 
 def normalised(name: str) -> str:
-    """The normalised form of a distribution's name."""
     return re.sub(r"[-_.]+", "-", name).lower()

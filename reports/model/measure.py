@@ -93,7 +93,6 @@ class Measurement:
 
     @property
     def method(self) -> str:
-        """The printed name of the engine and its variant."""
         return f"{self.engine} {self.variant}"
 
     @property
@@ -115,7 +114,6 @@ TIMINGS = ("cpu", "runs", "build")
 
 
 def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> Measurement:
-    """The row of a cell without numbers."""
     return Measurement(
         key=cell.key,
         purpose=cell.purpose,
@@ -206,7 +204,6 @@ def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Meas
 
 
 def process_seconds(function: Callable[[], Result]) -> tuple[float, Result]:
-    """(CPU seconds of this process, the result)."""
     start = time.process_time()
     result = function()
     return time.process_time() - start, result
@@ -226,7 +223,6 @@ def repeated_stepping(cell: Cell, mechanism: Mechanism, first: float, build: flo
 
 
 def sizes(mechanism: Mechanism, size: Any, freedoms: int) -> dict[str, int]:
-    """The sizes of the engine's model and of the mechanism."""
     return {
         **asdict(size),
         "own_bodies": len(mechanism.bodies),
@@ -239,7 +235,6 @@ def sizes(mechanism: Mechanism, size: Any, freedoms: int) -> dict[str, int]:
 def compare(
     cell: Cell, mechanism: Mechanism, trajectory: Trajectory, row: Measurement, truths: Path | None = None
 ) -> Measurement:
-    """Fill in the errors and the outcome of a row."""
     trajectory, note = stopped_where_it_ends(cell.scene, trajectory)
     count = usable_samples(trajectory)
     finite = first_samples(trajectory, count)
@@ -283,5 +278,4 @@ def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Traject
 
 
 def first_samples(trajectory: Trajectory, count: int) -> Trajectory:
-    """The motion at the first `count` samples."""
     return replace(trajectory, **{part: getattr(trajectory, part)[:count] for part in PARTS})

@@ -19,16 +19,12 @@ if TYPE_CHECKING:
     from reference.trajectory import Trajectory
     from reports.model.measure import Measurement
 
-TORN = (
-    0.05  # Largest gap in lengths of the mechanism; much larger than the effect of softness, and shorter than a link.
-)
+TORN = 0.05  # Largest gap in lengths of the mechanism; softness causes much smaller ones, and links are longer.
 BLOWN = 1e3  # Gap in lengths of the mechanism above which a run has diverged.
 SATURATED = 0.5  # rad; a larger angle error is no longer proportional to its cause.
 
 
 class Outcome(StrEnum):
-    """The outcome of a cell."""
-
     meaning: str  # A clause for pages.
     letter: str  # In a map.
     grade: int  # 0: the errors are comparable; 1: the method declares no result; 2: a wrong motion; 3: no motion.
@@ -93,14 +89,11 @@ class Outcome(StrEnum):
 
     @property
     def wrong(self) -> bool:
-        """Whether the motion of the cell is wrong."""
         return self.grade == 2
 
 
 @dataclass(frozen=True)
 class Loss:
-    """The outcome of a cell without a result."""
-
     outcome: Outcome
     sentence: str
 

@@ -57,7 +57,6 @@ class Material:
     answers: Mapping[Task, Answer] = field(default_factory=dict)
 
     def finished(self, task: Task) -> Answer | None:
-        """The answer to a task that was run and finished, else None."""
         answer = self.answers.get(task)
         return answer if answer is not None and answer.finished else None
 
@@ -75,7 +74,6 @@ class Material:
         return {cell: trajectory_of(answer) for cell, answer in answers if answer is not None}
 
     def sweep(self, scenes: Iterable[Scene]) -> list[Measurement]:
-        """The rows of the sweeps of these scenes."""
         return self._of(scenes, "sweep")
 
     def usual(self, scenes: Iterable[Scene]) -> list[Measurement]:
@@ -100,16 +98,12 @@ def usual_series(row: Measurement) -> bool:
 
 @dataclass(frozen=True)
 class Page:
-    """A page of the results about one mechanism."""
-
     name: str
     title: str
     lesson: str  # One sentence for the index.
     scenes: tuple[Scene, ...] = ()  # The scenes that the page teaches, each on only one page.
     engines: tuple[Engine, ...] = ()
-    companions: tuple[
-        Scene, ...
-    ] = ()  # Scenes of other pages; a run of one includes the cells of this page's failures.
+    companions: tuple[Scene, ...] = ()  # Scenes of other pages whose runs include the cells of this page's failures.
     borrowed: tuple[Cell, ...] = ()  # Cells of other pages whose rows this page uses; it does not run them.
     # A template, which may extend "base.md". If None: page.md in the folder with the page's name, else "base.md".
     template: Path | None = None
@@ -144,11 +138,9 @@ class Page:
 
     @property
     def document(self) -> str:
-        """The name of the page's Markdown file."""
         return f"{self.name}.md"
 
     def engines_of(self, scene: Scene) -> tuple[Engine, ...]:
-        """The engines that run a scene of the page."""
         return tuple(engine for engine in self.engines if self.compared(scene, engine))
 
     def extra_cells(self) -> tuple[Cell, ...]:

@@ -41,7 +41,6 @@ class Quantity:
 
     @property
     def heading(self) -> str:
-        """The label of a column or an axis with its errors."""
         return f"{self.label} error [{self.unit}]" if self.needs_truth else f"{self.label} [{self.unit}]"
 
 

@@ -49,7 +49,6 @@ class Answer:
 
     @property
     def told(self) -> str:
-        """The outcome and the reason in Markdown, for a table."""
         return f"**{self.outcome}**{': ' + self.sentence if self.sentence else ''}"
 
 
@@ -73,7 +72,6 @@ class Task(ABC):
 
     @property
     def engine(self) -> Engine | None:
-        """The engine that the task runs; None without an engine."""
         return None
 
     @abstractmethod
@@ -89,8 +87,6 @@ class Task(ABC):
 
 @dataclass(frozen=True)
 class Motion(Task):
-    """The trajectory of a cell, for a picture or an experiment."""
-
     cell: Cell
 
     @property

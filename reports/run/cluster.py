@@ -179,7 +179,6 @@ def _supervise(
 
 
 def _threads(client: Any) -> int:
-    """Number of threads of all connected workers, each of which runs one chunk at a time."""
     with suppress(OSError, ValueError):
         return sum(client.nthreads().values()) if client.status == "running" else 0
     return 0
@@ -199,7 +198,6 @@ def _answers(future: Any, count: int, scheduler: str) -> list[tuple[int, Any, st
 
 
 def _refused(refusal: Refusal, item: Any, scheduler: str) -> BadInput:
-    """The error message about a worker with other versions or files."""
     local, remote = versions_of(item), refusal.versions
     names = sorted(name for name in {*local, *remote} if local.get(name) != remote.get(name))
     differences = "; ".join(

@@ -175,7 +175,6 @@ def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:
 
 
 def numbers(version: str) -> tuple[int, ...]:
-    """Sort key of a version: 3.10.0 follows 3.9.0."""
     return tuple(int(part) for part in re.findall(r"\d+", version))
 
 

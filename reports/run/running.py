@@ -24,7 +24,6 @@ Item = TypeVar("Item", bound=Cell | Task)
 
 
 def work(timed: bool, truths: Path | None, item: Cell | Task) -> Measurement | Answer:
-    """The function that a worker applies to a cell or a task: see `run_items`."""
     return measure(item, timed, truths) if isinstance(item, Cell) else answered(item)
 
 
@@ -78,7 +77,6 @@ def run_items(
 
 
 def _result(item: Cell | Task, result: Any, note: str, limit: float) -> Measurement | Answer:
-    """The row or answer to store, also for an item without a result."""
     if not isinstance(result, Loss):
         retried = f"the first try {note}, the second went through" if note else ""
         return replace(result, sentence="; ".join(filter(None, (result.sentence, retried))))

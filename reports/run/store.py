@@ -96,7 +96,6 @@ class Store:
             self._connection.close()
 
     def put(self, row: Measurement) -> None:
-        """Store a row, replacing an older one of the same cell."""
         self._put(row.key, json.dumps(asdict(row)))
 
     def put_answer(self, task: Task, answer: Answer) -> None:
@@ -120,7 +119,6 @@ class Store:
             self._connection.executemany("insert or ignore into given values (?)", [(each,) for each in words])
 
     def load_references(self) -> tuple[str, ...]:
-        """The stored references, in the order of `save_references`."""
         with _file_trouble(self.path):
             return tuple(words for (words,) in self._connection.execute("select words from given order by rowid"))
 
@@ -218,7 +216,6 @@ def _put_aside(path: Path) -> Path:
 
 @lru_cache(maxsize=8192)  # a command reads a row several times, for missing cells, tables and pages
 def row_of(text: str) -> Measurement | None:
-    """A stored row, None if it can't be read."""
     try:
         values = json.loads(text)
         return Measurement(**{**values, "outcome": Outcome(values["outcome"])})
@@ -227,7 +224,6 @@ def row_of(text: str) -> Measurement | None:
 
 
 def answer_of(text: str) -> Answer | None:
-    """A stored answer, None if it can't be read."""
     try:
         stored = json.loads(text)
         values = {name: v if isinstance(v, str) else _unpacked(v) for name, v in stored["values"].items()}

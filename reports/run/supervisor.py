@@ -57,8 +57,6 @@ class WorkersLost(Broken):
 
 @dataclass
 class Job:
-    """An item to be run."""
-
     item: Any
     earlier: str = ""  # How the worker of the first try ended; empty before a second try.
     earlier_outside: bool = False  # Whether another program killed that worker.
@@ -149,7 +147,6 @@ class Pool:
         time.sleep(PAUSE * self._failed_starts)
 
     def _assign_job(self, worker: Worker) -> Iterator[Answer]:
-        """Give an idle worker a job, or end it if no job is left for it."""
         if self._retries and not worker.used:
             job = self._retries.popleft()
         elif self._waiting:
@@ -168,7 +165,6 @@ class Pool:
             worker.connection.send_bytes(data)
 
     def _on_message(self, worker: Worker) -> Iterator[Answer]:
-        """Handle a worker that is ready, has an answer, or has ended."""
         try:
             message = worker.connection.recv_bytes()
         except (EOFError, OSError):

@@ -65,7 +65,6 @@ def stop_all() -> None:
 
 
 def _kill(process: BaseProcess) -> None:
-    """Kill a worker and the processes that its jobs have forked."""
     with suppress(OSError):
         if hasattr(os, "killpg") and process.pid is not None:
             os.killpg(process.pid, signal.SIGKILL)
@@ -83,7 +82,6 @@ class Worker:
     cpu: float | None = None  # s of CPU time at the start of its job; None if the system does not report it.
 
     def used_cpu(self) -> float:
-        """CPU seconds of the current job; zero if the system does not report them."""
         now = cpu_time(self.process.pid or 0)
         return 0.0 if now is None or self.cpu is None else now - self.cpu
 
@@ -173,7 +171,6 @@ def process_start() -> Iterator[None]:
 
 
 def last_words(folder: Path, pid: int | None) -> str:
-    """The reason that native code printed before it aborted, or an empty text."""
     with suppress(OSError):
         text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
         lines = [line.strip() for line in text.splitlines() if line.strip()]

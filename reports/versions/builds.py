@@ -34,14 +34,11 @@ Progress = Callable[[str, int], AbstractContextManager[tuple[Done, Watch]]]
 
 @contextmanager
 def no_progress(label: str, count: int) -> Iterator[tuple[Done, Watch]]:
-    """A Progress that shows nothing."""
     yield (lambda row: None), (lambda labels: None)
 
 
 @dataclass(frozen=True)
 class Build:
-    """A released version of an engine, or another build of it."""
-
     label: str  # in tables
     engine: str
     location: Path
@@ -50,8 +47,6 @@ class Build:
 
 @dataclass(frozen=True)
 class BuildComparison:
-    """Two builds, their rows, and the differences."""
-
     sides: tuple[Build, Build]
     columns: tuple[VersionColumn, VersionColumn]
     comparison: RowComparison
@@ -133,7 +128,6 @@ def run_release(
 
 
 def _request(engine: str, location: Path, scenes: Sequence[Scene] | None, store: Path, **terms: Any) -> VersionRequest:
-    """The request for the version or build in `location`; `terms`: further fields."""
     chosen = scenes_named() if scenes is None else tuple(scenes)
     return VersionRequest(chosen, engine, modules_in(location), location, store.absolute(), folder=Path.cwd(), **terms)
 

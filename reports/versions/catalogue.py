@@ -18,8 +18,6 @@ SPARSE = "https://github.com/google-deepmind/mujoco/issues/3767"
 
 @dataclass(frozen=True)
 class NamedRelease:
-    """A release of an engine."""
-
     engine: str
     version: str
     changed: str = ""  # A clause about a known change.
@@ -65,7 +63,6 @@ FORMERLY: Mapping[str, tuple[str, ...]] = {"mujoco-core": ("mujoco",)}
 
 
 def compared_versions() -> dict[str, tuple[str, ...]]:
-    """Engine -> versions in RELEASES."""
     engines = dict.fromkeys(release.engine for release in RELEASES)
     return {name: tuple(release.version for release in RELEASES if release.engine == name) for name in engines}
 

@@ -38,8 +38,6 @@ Watch = Callable[[Sequence[str]], None]
 
 @dataclass(frozen=True)
 class VersionRequest:
-    """The cells of one version that are to be run."""
-
     scenes: tuple[Scene, ...]
     engine: str  # A registered name, or a reference (`engines.loading`) relative to `folder`.
     modules: tuple[str, ...]  # Top-level packages that must be imported from `location`.
@@ -56,8 +54,6 @@ class VersionRequest:
 
 @dataclass(frozen=True)
 class VersionColumn:
-    """The results of one version."""
-
     version: str
     rows: tuple[Measurement, ...]
     trees: tuple[tuple[Trees, Answer], ...] = ()
@@ -113,7 +109,6 @@ def column(
 
 
 def cells_of(request: VersionRequest, engines: Sequence[Engine]) -> list[Cell]:
-    """The requested cells of these engines."""
     cells = [Cell(scene, engine, every) for every in request.every for scene in request.scenes for engine in engines]
     return [cell for cell in cells if estimated_cost(cell) <= request.most]
 
@@ -227,7 +222,6 @@ def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any
 
 
 def modules_in(folder: Path) -> tuple[str, ...]:
-    """The top-level packages and modules in a folder."""
     names = {
         path.name.split(".")[0]
         for path in folder.iterdir()

@@ -86,11 +86,9 @@ class RowComparison:
 
     @property
     def costs(self) -> dict[str, float]:
-        """The `cost` of each method that was timed."""
         return {part.method: part.cost for part in self._by("method") if not math.isnan(part.cost)}
 
     def lines(self) -> list[RowComparison]:
-        """A comparison for each method of each scene, in the order of the rows."""
         return self._by("scene", "method")
 
     def _by(self, *names: str) -> list[RowComparison]:
@@ -125,7 +123,6 @@ class RowComparison:
 
 
 def compared(before: Iterable[Measurement], after: Iterable[Measurement]) -> RowComparison:
-    """The comparison of the cells that both sides have."""
     new = {identity(row): row for row in after}
     old = {identity(row): row for row in before}
     return RowComparison(tuple((row, new[key]) for key, row in old.items() if key in new))

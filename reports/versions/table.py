@@ -33,8 +33,6 @@ LONGEST_SENTENCE = 200  # characters.
 
 @dataclass(frozen=True)
 class Entry:
-    """The result of a scene in a method of a version."""
-
     engine: str
     version: str
     scene: str
@@ -71,8 +69,6 @@ class Entry:
 
 @dataclass(frozen=True)
 class ReleaseTable:
-    """The entries of all versions."""
-
     entries: tuple[Entry, ...]
     marks: Mapping[tuple[str, str], str]  # (engine, version) -> why it is known to be wrong, or can't be used
 
@@ -81,7 +77,6 @@ class ReleaseTable:
         return tuple(dict.fromkeys(entry.engine for entry in self.entries))
 
     def versions(self, engine: str) -> tuple[str, ...]:
-        """The versions of an engine, the oldest first."""
         return tuple(sorted({entry.version for entry in self.of(engine)}, key=numbers))
 
     def of(self, engine: str) -> list[Entry]:
