@@ -20,8 +20,6 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Annotated
 
-import numpy as np
-
 from engines import Engine, Unsupported
 from reference.checks import LARGEST_COUNT, InvalidMechanism, validated
 from reference.mechanism import Mechanism
@@ -33,6 +31,7 @@ from reports.search.parts import (
     FORCE_KINDS,
     SINGULAR_KINDS,
     TOGGLE,
+    Integers,
     Recipe,
     RecipeBody,
     RecipeLink,
@@ -74,29 +73,20 @@ def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decad
     """
     if not kinds or not {*kinds} <= {*ALL_KINDS, *SINGULAR_KINDS}:
         raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(ALL_KINDS)}")
-    draw = _Draw(np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades]))), kinds, decades)
+    draw = _Draw([seed, number, decades], kinds, decades)
     while True:
         drawn_recipe = draw.recipe()
         if drawn_recipe is not None:
             return drawn_recipe
 
 
-class _Draw:
-    """The random generator of one case and the recipe that is drawn from it."""
+class _Draw(Integers):
+    """The random integers of one case and the recipe that is drawn from them."""
 
-    def __init__(self, random: np.random.Generator, kinds: Kinds, decades: int) -> None:
-        self._random, self._decades = random, decades
+    def __init__(self, seed: Sequence[int], kinds: Kinds, decades: int) -> None:
+        super().__init__(seed)
+        self._decades = decades
         self._kinds = tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if kind in kinds)
-
-    def whole(self, low: int, high: int) -> int:
-        """Draw an integer from `low` to `high`, both included."""
-        return int(self._random.integers(low, high + 1))
-
-    def two(self, most: int) -> tuple[int, int]:
-        return self.whole(-most, most), self.whole(-most, most)
-
-    def chance(self, one_in: int) -> bool:
-        return self.whole(1, one_in) == 1
 
     def recipe(self) -> Recipe | None:
         """Draw a recipe; None if it has no links, or neither gravity nor a motion."""
@@ -216,10 +206,8 @@ def recipe_of_shape(engine: Engine, seed: int, number: int, kinds: tuple[str, ..
     shapes = _shapes(engine, seed, kinds, decades)
     if not shapes:
         return recipe(seed, number, kinds, decades)
-    random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, decades, SHAPE_COUNT])))
-    return renumber(
-        shapes[number // CASES_PER_SHAPE % len(shapes)], lambda low, high: int(random.integers(low, high + 1))
-    )
+    whole = Integers([seed, number, decades, SHAPE_COUNT]).whole
+    return renumber(shapes[number // CASES_PER_SHAPE % len(shapes)], whole)
 
 
 @lru_cache(maxsize=8)

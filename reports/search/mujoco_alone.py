@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from engines.constrained import constrained
 from reference.checks import InvalidMechanism
-from reports.search.parts import ladder
+from reports.search.parts import Integers, ladder
 from reports.search.recipe import DEPENDENCE_LIMIT, MOTION_ROUNDING
 
 Array = NDArray[np.float64]
@@ -279,20 +279,15 @@ def draw_model(seed: int, number: int, kinds: tuple[str, ...]) -> RawModel:
 
     If all kinds are HINGED_KINDS, no body has slides.
     """
-    random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number, len(kinds)])))
+    random = Integers([seed, number, len(kinds)])
     while True:
         candidate = _draw_once(random, kinds)
         if candidate.links and (any(candidate.gravity) or start_equations(candidate).rates.any()):
             return candidate
 
 
-def _draw_once(random: np.random.Generator, kinds: tuple[str, ...]) -> RawModel:
-    def whole(low: int, high: int) -> int:
-        return int(random.integers(low, high + 1))
-
-    def two(most: int) -> tuple[int, int]:
-        return whole(-most, most), whole(-most, most)
-
+def _draw_once(random: Integers, kinds: tuple[str, ...]) -> RawModel:
+    whole, two = random.whole, random.two
     count, hinged, moving = whole(2, RAW_BODIES), {*kinds} <= {*HINGED_KINDS}, whole(1, 4) > 1
     parts = []
     for index in range(count):

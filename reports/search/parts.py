@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from decimal import Decimal
 from typing import Any, TypeVar, get_args, get_type_hints
+
+import numpy as np
 
 Case = TypeVar("Case")
 
@@ -99,6 +102,23 @@ class Recipe:
     def kinds(self) -> tuple[str, ...]:
         """The kinds of the joints and forces, in the order of ALL_KINDS."""
         return tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if any(link.kind == kind for link in self.links))
+
+
+class Integers:
+    """Random integers from a seed, the same on every machine."""
+
+    def __init__(self, seed: Sequence[int]) -> None:
+        self._random = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
+
+    def whole(self, low: int, high: int) -> int:
+        """Draw an integer from `low` to `high`, both included."""
+        return int(self._random.integers(low, high + 1))
+
+    def two(self, most: int) -> tuple[int, int]:
+        return self.whole(-most, most), self.whole(-most, most)
+
+    def chance(self, one_in: int) -> bool:
+        return self.whole(1, one_in) == 1
 
 
 def ladder(step: int) -> Decimal:

@@ -1,7 +1,5 @@
-// One function for the page: it builds a space from numbers, steps it and records poses and twists.
-// The numbers are those of reports/site/live/models.py: gravity (2), collision slop and bias, the number of bodies,
-// settings of the solver, the bodies, and records of joints, shapes and of code of ours around each step. Velocities are per second;
-// the space counts time in `unit` seconds, as the adapter's model does.
+// A function for the page: it builds a space from numbers, steps it and records poses and twists. `space_of` in
+// reports/site/live/models.py defines the numbers. Velocities are per second; the unit of time of the space is `unit` seconds.
 
 #include "chipmunk/chipmunk_private.h"
 #include <emscripten.h>
