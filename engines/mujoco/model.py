@@ -89,7 +89,6 @@ class MuJoCoModel:
         return self.unit * np.stack([mass, mass, inertia], axis=-1), compiled.opt.gravity[:2].copy()
 
     def start(self) -> Any:
-        """A new mujoco.MjData with the initial state of the mechanism, after mj_forward."""
         data = mujoco.MjData(self.compiled)
         data.qvel[self.address] = self.tree.start_rates()
         for driven in self.driven:

@@ -48,8 +48,6 @@ def residual_warning(residual: float) -> RunWarning:
 
 @dataclass
 class WarningLog:
-    """MuJoCo's warnings, each message once, and the time of its first reset."""
-
     data: Any = None
     messages: dict[str, None] = field(default_factory=dict)
     reset_at: float | None = None  # s
@@ -256,7 +254,6 @@ class MuJoCoRun(OneShot):
         return acceleration, residual
 
     def _own_warnings(self, pose: Array, t: Array, residual: float) -> list[RunWarning]:
-        """Warnings of an open joint and of a solver that has not converged, which MuJoCo does not report."""
         mechanism, warnings = self.model.mechanism, []
         gap = np.nan_to_num(np.abs(mechanism.gap(pose, t))) if len(t) else np.zeros((0, 0))
         if gap.size:

@@ -18,8 +18,7 @@ from engines.mujoco.releases import full_inertia
 # solvers that suit a mechanism, and at least 1e-2 for others.
 SOLVED_RESIDUAL = 1e-6
 # Largest fraction of an error that may remain after an iteration of Newton's method. With this limit, three iterations
-# reduce the error to rounding. In 850 scenes and random mechanisms the fraction is at most 0.08, except for 0.13, 0.48
-# and 2 in three of them.
+# reduce the error to rounding. In 850 scenes and random mechanisms the fraction is at most 0.08, with three exceptions.
 MAX_REMAINING_ERROR = 0.1
 
 _factorise, _inverse_condition = get_lapack_funcs(("potrf", "pocon"), dtype=np.float64)

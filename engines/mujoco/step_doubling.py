@@ -61,7 +61,7 @@ class StepDoubling:
         With a run of steps h / 2, let q be the ratio of the difference to that run and the difference to steps 2h. It
         is 1/16 for RK4, and q <= 1/8 confirms at least third order. In this case, the differences for further halved
         steps are assumed to fall by at least one half each, so their sum is at most 2 q times the difference to h / 2.
-        Otherwise each difference is assumed to be at most 2/3 of the previous one, and all add up to three times the
+        If q > 1/8, each difference is assumed to be at most 2/3 of the previous one, so all add up to three times the
         first. (Near a change point, a factor of one half missed a fifth of the error.) Since an error may pass through
         zero, q is the ratio of the largest differences so far.
         """

@@ -57,11 +57,10 @@ class Shipped(_Spring):
 class TiedToStep(_Spring):
     """Springs with documented settings only: a time constant of some steps, and the largest impedance.
 
-    The gap is R f / k, so it falls as the square of the step. With no other documented setting does it vanish. MuJoCo
-    increases a shorter time constant to two steps, unless the flag `refsafe` is disabled (mjDSBL_REFSAFE in mjtype.h).
-    With the integrator "discrete" it does not change that of equalities, and that of contacts is at least about one
-    step (4.0.1, checked by a test in `tests/engines/test_mujoco_upstream.py`). `time_constant` is that of all other
-    integrators.
+    The gap is R f / k, so it falls as the square of the step. MuJoCo increases a shorter time constant to two steps,
+    unless the flag `refsafe` is disabled (mjDSBL_REFSAFE in mjtype.h). The integrator "discrete" keeps short time
+    constants of equalities, and increases those of contacts to about one step (4.0.1, checked by a test in
+    `tests/engines/test_mujoco_upstream.py`). `time_constant` is valid for all other integrators.
     """
 
     steps: Positive = 5.0

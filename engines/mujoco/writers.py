@@ -42,7 +42,6 @@ class Mjcf:
     suffix: str = ".xml"
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
-        """Raises Unsupported for a mechanism that MJCF cannot represent, and ValueError for an unknown variant."""
         from engines.mujoco.methods import VARIANTS
 
         known = {engine.variant: engine for engine in VARIANTS}
@@ -89,7 +88,6 @@ URDF_CAPABILITY = Capability("URDF", frozenset({Pin, Slot, Weld, Drive}), frozen
 
 
 def urdf(mechanism: Mechanism) -> str:
-    """The text of a URDF file. Raises Unsupported for loops, free bodies, prescribed motions and forces."""
     URDF_CAPABILITY.require(mechanism)
     tree = spanning_tree(mechanism)
     for joint in tree.loops:
@@ -197,7 +195,7 @@ def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
     coefficients = iter(compiled.wrap_prm)
     for element in root.find("tendon") or ():
         tendon = spec.tendon(element.get("name"))
-        # In newer releases these are polynomials. Their trailing zeros are omitted.
+        # In newer releases these coefficients are polynomials, whose trailing zeros are omitted.
         polynomials = {name: np.trim_zeros(np.ravel(getattr(tendon, name)), "b") for name in ("stiffness", "damping")}
         _set(element, springlength=tendon.springlength, **polynomials)
         for child, coefficient in zip(element, coefficients, strict=False):
@@ -225,7 +223,6 @@ def _set(element: xml.Element | None, **numbers: Any) -> None:
 
 
 def _rename(root: xml.Element, model: MuJoCoModel) -> None:
-    """Rename the bodies as in the mechanism, with a number if another body of the file has the same name."""
     old = [f"body {number}" for number in range(len(model.mechanism.bodies))]
     names = Names()
     for other in ("world", *(element.get("name", "") for element in root.iter("body"))):

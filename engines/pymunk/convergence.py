@@ -170,7 +170,6 @@ def stable_factor(mechanism: Mechanism, poses: Numbers, rho: Factor, rolls_are_c
 
 
 def iterations_for(rho: float, fewest: int = MIN_ITERATIONS) -> int:
-    """The number of iterations that reduce the slowest mode to RESIDUAL; at least `fewest`."""
     return max(fewest, ceil(log(RESIDUAL) / log(rho))) if rho > 0 else fewest
 
 

@@ -117,12 +117,10 @@ class Pymunk(Engine, Valid):
 
     @validated
     def settled_for(self, steps: Count) -> Pymunk:
-        """This engine with `steps` steps in each start-up stage, if it has a start-up; see `extrapolated.Settling`."""
         return replace(self, startup_steps=steps) if self.startup_steps else self
 
     @validated
     def iterations_of(self, mechanism: Mechanism) -> int:
-        """The iterations in a step, from the convergence at t = 0 if the settings do not give their number."""
         return self.plan(mechanism).iterations
 
     @validated

@@ -157,7 +157,6 @@ class ScriptWriter:
     suffix = ".py"
 
     def write(self, mechanism: Mechanism, dt: float, variant: str) -> str:
-        """Raises Unsupported for a mechanism or a variant without a script, and ValueError for an unknown variant."""
         from engines.pymunk.methods import METHODS
 
         methods = {engine.variant: engine for engine in METHODS}

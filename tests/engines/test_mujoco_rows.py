@@ -89,7 +89,7 @@ def test_user_rows_are_the_rows_of_the_mechanism_in_tree_coordinates() -> None:
         index = dict(zip((None, *(body.name for body in mechanism.bodies)), range(5), strict=True))
         # The first body is the ground.
         pose, twist, change = (np.vstack([np.zeros(3), values[0]]) for values in tree.motion(q[None], v[None], a[None]))
-        # The mechanism's rows are in maximal coordinates. A complex step gives their rates of change.
+        # The mechanism's rows are in maximal coordinates, and a complex step gives the rates of change of the rows.
         for row, joint in enumerate(joints):
             ends = [index[joint.first], index[joint.second]]
             poses, twists, velocity, step = pose[ends], twist[ends], twist[ends].ravel(), 1e-100

@@ -139,7 +139,6 @@ def test_the_bare_loop_makes_all_steps_of_a_run(engine, levels, monkeypatch):
 
 
 def test_the_import_of_the_engines_leaves_no_space_or_body():
-    """A space or body that is freed at the end of the interpreter may crash the process."""
     code = """
 import gc, pymunk, engines.registry
 gc.collect()
@@ -222,7 +221,6 @@ def side_by_side(places, rates) -> Mechanism:
 
 
 def test_shapes_of_different_rolls_do_not_collide():
-    """Two discs that overlap roll independently of each other."""
     for engine in METHODS:
         trajectory = engine.build(side_by_side((0.0, 0.4), (1.0, 2.0)), 1e-3)(10, 10)
         assert largest(trajectory.twist[:, :, 2] - [1.0, 2.0]) < 1e-2

@@ -65,7 +65,6 @@ RollBy = RollContact | Literal["rows"]
 
 
 def add_rolls(builder: ModelBuilder, rolls: Sequence[Roll]) -> None:
-    """Add rolls with the construction of the settings. Raises Unsupported for curves without a shape in MuJoCo."""
     by = builder.settings.rolls
     if isinstance(by, RollContact):
         _add_contacts(builder, rolls, by)

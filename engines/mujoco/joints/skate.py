@@ -50,7 +50,6 @@ def slip_damping(mechanism: Mechanism) -> float:
 
 
 def add_skates(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
-    """Add skates with the construction of the settings. Raises Unsupported for a blade on a moving body."""
     if builder.settings.skates == "blade":
         _add_blades(builder, skates)
         return

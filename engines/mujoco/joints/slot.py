@@ -1,7 +1,7 @@
 """Constructions of slots that are no slide of the kinematic tree.
 
-A slot is linear if its line is fixed and its point is the centre of mass of a free body. It is then an equality of a
-fixed tendon. `SlotBy` is the construction of all other slots:
+If a slot keeps the centre of mass of a free body on a line of the ground, it is an equality of a fixed tendon. `SlotBy`
+is the construction of all other slots:
 
 - "halves": the second body is split into two halves with the same centre of mass. Joints of the tree let one half slide
   and turn in the first body, and a `weld` joins the halves. MuJoCo provides all of these elements.

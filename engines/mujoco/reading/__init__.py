@@ -111,7 +111,6 @@ def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
 
 
 def _refuse_not_finite(model: Any, data: Any) -> None:
-    """Raise Unsupported for NaN or infinity in the initial state, which MuJoCo accepts."""
     joints_of_qpos = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
     owners_of = (("qpos", JOINT, joints_of_qpos), ("qvel", JOINT, model.dof_jntid), ("ctrl", ACTUATOR, None))
     for name, kind, owners in owners_of:
@@ -123,7 +122,6 @@ def _refuse_not_finite(model: Any, data: Any) -> None:
 
 
 def _note_gravity_across(planar: PlanarModel) -> None:
-    """Note gravity normal to the plane. Raises Unsupported for a free body, which would leave the plane."""
     model = planar.model
     across = 0.0 if is_off(model, "GRAVITY") else float(model.opt.gravity @ planar.frame.normal)
     if abs(across) <= 1e-12 * max(1.0, float(np.linalg.norm(model.opt.gravity))):

@@ -59,7 +59,6 @@ def _joints_with_parent(planar: PlanarModel, group: int) -> list[Joint]:
 
 
 def is_driven(planar: PlanarModel, joint: int) -> bool:
-    """Whether a joint is a hinge with an armature that is so large that no force changes its rate."""
     armature = float(planar.model.dof_armature[int(planar.model.jnt_dofadr[joint])])
     points = np.array(
         [body.pose[:2] for body in planar.bodies] + [planar.frame.in_plane(at) for at in planar.data.xanchor]
@@ -70,7 +69,6 @@ def is_driven(planar: PlanarModel, joint: int) -> bool:
 
 
 def drives(planar: PlanarModel) -> list[Drive]:
-    """A drive with the initial rate for every driven hinge, and a note about it."""
     out = []
     for joint in range(planar.model.njnt):
         if not is_driven(planar, joint):
@@ -169,7 +167,6 @@ def _term(planar: PlanarModel, joint: int, factor: float) -> Term:
 
 
 def terms_of(planar: PlanarModel, parts: WeightedJoints) -> tuple[tuple[Term, ...], float]:
-    """The terms of a sum of joint coordinates, and the initial value of the sum."""
     terms = tuple(_term(planar, joint, factor) for joint, factor in parts)
     pose = {body.name: np.array(body.pose) for body in planar.bodies} | {None: np.zeros(3)}
     return terms, float(sum(term.value(pose[term.first], pose[term.second]) for term in terms))
@@ -211,7 +208,6 @@ def ends_of_tendon(planar: PlanarModel, tendon: int) -> Ends:
 
 
 def _read_coupling(planar: PlanarModel, index: int, element: str) -> list[Joint]:
-    """The ideal joint of a linear relation between the coordinates of two joints, or of a fixed coordinate."""
     model, curve = planar.model, planar.model.eq_data[index][:5]
     pairs = [(int(model.eq_obj1id[index]), 1.0), (int(model.eq_obj2id[index]), -float(curve[1]))]
     parts = [(joint, factor) for joint, factor in pairs if joint >= 0 and factor]
@@ -247,7 +243,6 @@ def _read_sum(planar: PlanarModel, index: int, element: str, parts: WeightedJoin
 
 
 def _read_tendon(planar: PlanarModel, index: int, element: str) -> list[Joint]:
-    """The ideal joint of an equality of tendons, which is a rod or a constant sum of coordinates."""
     model, data = planar.model, planar.data
     tendon, other = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
     extension = data.ten_length - model.tendon_length0

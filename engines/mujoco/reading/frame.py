@@ -55,7 +55,6 @@ def name_of(model: Any, kind: Any, index: Any) -> str:
 
 
 def plain_name(model: Any, kind: Any, index: int) -> str:
-    """The name of an element, or its kind and number if it has no name."""
     return mujoco.mj_id2name(model, kind, index) or name_of(model, kind, index)
 
 
@@ -248,7 +247,6 @@ class PlanarModel:
         return 0.0 if group < 0 else self.bodies[group].pose[2]
 
     def turned(self, first: int, second: int) -> float:
-        """The initial angle of the second group relative to the first [rad]."""
         return self.angle(second) - self.angle(first)
 
     def in_body(self, group: int, point: Any) -> Vector:

@@ -136,7 +136,6 @@ STEP_COUNT, FURTHER_STEP_COUNT = 6, 11  # how many steps are tried; each is half
 
 
 def switch_off(model: Any, element: str) -> None:
-    """Switch off a kind of element in a model. Raises ValueError for an unknown kind."""
     if element == "armature":
         model.dof_armature[:] = 0.0
     elif element == "forcelimit":

@@ -31,7 +31,6 @@ class Crank:
 
 
 def find_cranks(mechanism: Mechanism) -> dict[str, Crank]:
-    """The cranks by the name of the body, each with the first pin and the first drive to the ground."""
     pins = _joints_to_ground(mechanism, Pin)
     return {name: Crank(pins[name], drive) for name, drive in find_turned(mechanism).items() if name in pins}
 

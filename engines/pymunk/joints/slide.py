@@ -159,8 +159,6 @@ def along_blade(joint: Skate) -> float:
 
 
 class AimedGroove:
-    """A groove in the ground that is placed under the blade before every step."""
-
     def __init__(self, joint: Skate, ground: pymunk.Body, body: pymunk.Body, length: float) -> None:
         along = along_blade(joint)
         anchor = (along * cos(joint.angle), along * sin(joint.angle))
@@ -181,8 +179,6 @@ class AimedGroove:
 
 
 class Zeroed:
-    """The update after every step that sets the velocity across the blade to zero."""
-
     def __init__(self, joint: Skate, body: pymunk.Body, construction: SkateConstruction) -> None:
         self._body, self._angle = body._body, joint.angle
         along = along_blade(joint)

@@ -76,7 +76,6 @@ class SpaceReader:
         return (file or word).lower().endswith(".py")
 
     def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
-        """Raises ValueError for a script without a space, and Unsupported for a space that is no mechanism."""
         if terms.key:
             raise ValueError(f"--key is {terms.key!r}; a space has no stored states")
         file, _, name = word.rpartition(":")

@@ -271,14 +271,12 @@ READ_CONSTRAINTS: Mapping[type[constraints.Constraint], ConstraintEntry] = {
 
 
 def is_equality(constraint: constraints.Constraint) -> bool:
-    """Whether a constraint is a limit with equal ends, which acts as a joint."""
     if not isinstance(constraint, LIMIT_JOINTS):
         return False
     return constraint.max - constraint.min <= EQUAL_ENDS * max(1.0, abs(constraint.max))
 
 
 def both_sided(limit: Any) -> constraints.Constraint:
-    """The pymunk joint that is equivalent to a limit with equal ends."""
     if isinstance(limit, constraints.SlideJoint):
         rod = constraints.PinJoint(limit.a, limit.b, limit.anchor_a, limit.anchor_b)
         rod.distance = limit.min

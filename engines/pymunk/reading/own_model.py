@@ -44,7 +44,6 @@ CONVERGED_ITERATIONS = 20_000  # of that step
 
 
 def switch_off(space: pymunk.Space, element: str) -> None:
-    """Switch off a kind of element in a space. Raises ValueError for an unknown kind."""
     if element == "contact":
         for shape in space.shapes:
             shape.sensor = True

@@ -195,7 +195,6 @@ class _FirstStep:
     by_lines: bool = False  # whether the calling code moves the bodies back, or replaces their position function
 
     def begin(self, space: Any, names: Sequence[str]) -> None:
-        """Store the velocities. `names`: the attributes that the calling code uses."""
         self.space, bodies = space, list(space.bodies)
         self.velocities = tuple((body.velocity, body.angular_velocity) for body in bodies)
         without_drift = any(body._position_func is not None for body in bodies)
@@ -240,7 +239,6 @@ def _stopped_at_step(is_wanted: Callable[[Any], bool], half: float | None) -> It
 
 
 def _is_wanted(space: pymunk.Space, module: types.ModuleType, name: str) -> bool:
-    """Whether a space has this name in the module or in a function on the call stack."""
     if not name:
         return True
     if name in vars(module):
