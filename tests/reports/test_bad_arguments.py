@@ -138,7 +138,7 @@ def test_every_engine_accepts_steps_and_counts_of_numpy_and_refuses_bad_ones(eng
 
 
 @pytest.mark.parametrize("scene", [*SCENES, *SCENES_OF_LIMITS], ids=lambda scene: scene.name)
-def test_a_scene_refuses_times_and_poses_that_can_not_be_meant(scene):
+def test_a_scene_refuses_invalid_times_and_poses(scene):
     for times in ([math.inf], [-1.0], "abc", None, [[0.0, 0.1]], [True]):
         with pytest.raises(InvalidMechanism, match=f"scene '{scene.name}': t is .*must be finite numbers in one row"):
             scene.motion(times)

@@ -46,6 +46,6 @@ def test_exact_motions_are_sorted_by_cost_and_a_scene_without_one_is_left_out():
     assert [row[1] for row in rows] == sorted((row[1] for row in rows), reverse=True)
 
 
-def test_a_command_is_timed_as_a_process_with_its_status():
+def test_a_timed_command_reports_its_exit_status():
     assert measure_command(["--help"]).status == 0
     assert measure_command(["no such command"]).status == 2

@@ -69,7 +69,7 @@ def shipped(tmp_path_factory):
     return found_in(tmp_path_factory.mktemp("shipped"), FOUR_BAR)
 
 
-def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copied(tmp_path, shipped):
+def test_softness_is_the_main_error_of_a_default_mujoco_four_bar_and_the_advice_can_be_pasted(tmp_path, shipped):
     result = shipped
     assert not result.met
     # The declared softness of the loop explains most of the error, and the step the remaining error.
@@ -91,7 +91,7 @@ def test_a_four_bar_as_shipped_misses_by_its_softness_and_the_advice_can_be_copi
     assert again.verdict.endswith("the tolerance of 1e-4 is met.")
 
 
-def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion(tmp_path):
+def test_the_declared_motion_with_a_very_fast_damper_is_integrated(tmp_path):
     """The rate of the damper is d / I = 1e6 / s, for which an explicit method overflows."""
     damped = FOUR_BAR.replace('axis="0 1 0"', 'axis="0 1 0" damping="5"').replace('size="0.02"', 'size="0.002"')
     result = found_in(tmp_path, damped)
@@ -99,7 +99,7 @@ def test_dampers_that_are_much_faster_than_the_motion_keep_their_declared_motion
     assert result.parts.step < 1e-2
 
 
-def test_lines_for_a_urdf_file_stand_in_mujocos_own_element_and_can_be_pasted(tmp_path):
+def test_the_lines_for_a_urdf_file_are_in_a_mujoco_element_and_can_be_pasted(tmp_path):
     text = re.sub(r"<mujoco>.*?</mujoco>", "", urdf(PENDULUM_2.mechanism()), flags=re.DOTALL)
     result = found_in(tmp_path, text, "chain.urdf", "chain.urdf", tolerance=1e-6)
     (line,) = answer_section(result).code
@@ -128,7 +128,7 @@ def test_an_equality_that_a_default_does_not_reach_is_named_in_the_advice(tmp_pa
     assert found_in(tmp_path, model_text.replace(words, values).replace("</mujoco>", f"{lines[0]}</mujoco>")).met
 
 
-def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp_path):
+def test_a_driven_pymunk_linkage_is_compared_in_all_forces_except_those_of_the_crank(tmp_path):
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
     result = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
     # The error is of first order, about the step times a rate of 10 rad/s. The forces of the crank are unknown.
@@ -140,7 +140,7 @@ def test_a_driven_linkage_of_pymunk_is_judged_with_all_forces_but_the_cranks(tmp
     assert "0 freedoms by the rank" in report_sections(result)[1].sentences[0]
 
 
-def test_a_crank_driven_by_armature_in_mujoco_is_judged_as_driven(tmp_path):
+def test_a_mujoco_crank_with_a_huge_armature_is_read_as_a_prescribed_rate(tmp_path):
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
     result = found_in(tmp_path, TUNED.text(scene.mechanism(), 1e-3))
     # The file's bodies are parallel to the world at the start, so angles are measured from there.
@@ -150,7 +150,7 @@ def test_a_crank_driven_by_armature_in_mujoco_is_judged_as_driven(tmp_path):
     assert any("taken as driven at 10 rad/s" in note.reason for note in result.reading.notes)
 
 
-def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_copied(tmp_path):
+def test_the_step_is_the_main_error_of_a_default_pymunk_pendulum_and_the_advice_can_be_pasted(tmp_path):
     result = found_in(tmp_path, PENDULUM, "swing.py", "swing.py:make", tolerance=3e-3, step=0.01)
     assert not result.met
     assert not result.parts.divided
@@ -164,7 +164,7 @@ def test_a_pymunk_pendulum_as_shipped_misses_by_its_step_and_the_advice_can_be_c
     assert again.met
 
 
-def test_the_judge_of_a_check_is_the_truth_of_a_scene():
+def test_the_ideal_motion_of_a_check_is_the_exact_motion_of_the_scene():
     scene = FreeFourBar()
     judge = reference_motion(scene.mechanism(), 40, 0.01)
     truth = scene.motion(judge.trajectory.t)
@@ -175,7 +175,7 @@ def test_the_judge_of_a_check_is_the_truth_of_a_scene():
     assert measure_errors(scene.mechanism(), judge.trajectory, judge.looser).largest < 1e-7
 
 
-def test_a_drive_that_gives_way_is_damped_against_its_own_rate():
+def test_the_damping_of_a_soft_drive_is_relative_to_its_prescribed_rate():
     joints = (Pin("hinge", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 3.0, 0.0))
     at_rate = Mechanism((Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 3.0)),), joints)
     none = np.zeros(3)
@@ -217,7 +217,7 @@ def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
     assert facts.stiffest_mode == pytest.approx(rate, rel=1e-4)
 
 
-def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_not():
+def test_exponential_growth_of_a_disturbance_ends_the_horizon_and_linear_growth_does_not():
     regular = reference_motion(PENDULUM_1.mechanism(), 200, 0.01)
     assert regular.horizon == regular.trajectory.t[-1]
     # After 3,000 radians an initial error of the rate has grown by this factor, and the allowed error too.
@@ -241,7 +241,7 @@ def test_chaos_ends_the_horizon_and_a_disturbance_that_grows_as_the_time_does_no
         reference_motion(wild, 10, 0.1, tolerance=1e-20)
 
 
-def test_the_report_can_be_read_by_people_and_programs(shipped):
+def test_the_report_is_rendered_as_text_html_and_markdown(shipped):
     displayed = picture_data_from_text(picture_data_of(shipped).as_text())
     pictures = render_pictures(displayed)
     without_error = replace(displayed, found=replace(displayed.found, bars=displayed.ideal.bars))

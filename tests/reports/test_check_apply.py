@@ -29,7 +29,7 @@ def checked(folder, word, **terms) -> CheckReport:
     return check
 
 
-def test_a_model_is_written_with_the_advised_settings_and_nothing_else_and_reaches_what_was_promised(tmp_path):
+def test_apply_changes_only_the_advised_settings_and_the_written_model_has_the_expected_error(tmp_path):
     text = FOUR_BAR.replace("<worldbody>", "<!-- mine: <option> > -->\n<worldbody>")
     (tmp_path / "model.xml").write_text(text)
     result = checked(tmp_path, "model.xml", tolerance=1e-4, apply="new.xml")
@@ -49,7 +49,7 @@ def test_a_model_is_written_with_the_advised_settings_and_nothing_else_and_reach
 
 
 @pytest.mark.parametrize(("text", "word"), [(LOOP, "x.py"), (LOOP, "x.py:space"), (INSIDE, "x.py:main")])
-def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_path, text, word):
+def test_settings_are_inserted_before_the_first_step_of_a_script(tmp_path, text, word):
     (tmp_path / "x.py").write_text(text)
     result = checked(tmp_path, word, tolerance=3e-3, apply="y.py")
     assert result.data["step"] == 0.01
@@ -70,7 +70,7 @@ def test_a_script_that_steps_its_space_is_stopped_before_and_changed_before(tmp_
         assert places[1] != places[0]
 
 
-def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
+def test_a_constant_force_on_a_body_acts_in_every_part_of_a_divided_step(tmp_path):
     push = PENDULUM.replace("    return space", "    bob.force = (0, 4)\n    return space")
     (tmp_path / "x.py").write_text(push)
     result = checked(tmp_path, "x.py:make", tolerance=1e-3, search=True, apply="y.py")
@@ -100,13 +100,13 @@ def test_a_force_that_stands_on_a_body_pushes_in_every_part_of_a_step(tmp_path):
         (b"<robot><mujoco/></robot>", b'<robot><mujoco><option timestep="0.001" integrator="RK4"/></mujoco></robot>'),
     ],
 )
-def test_options_are_set_where_they_are_or_where_they_belong(source, wanted):
+def test_existing_options_are_replaced_and_missing_ones_are_inserted(source, wanted):
     change = Change("", 0.001, (), (("integrator", "RK4"), ("tied", False)))
     assert rewritten(source, change) == wanted
     assert rewritten(wanted, change) == wanted
 
 
-def test_quick_tries_four_settings_and_all_are_run_if_asked_for_with_the_same_causes(tmp_path):
+def test_quick_tries_four_settings_and_all_tries_all_with_the_same_causes(tmp_path):
     (tmp_path / "model.xml").write_text(FOUR_BAR)
     option_sets = ({"quick": True}, {}, {"everything": True})
     quick, total, every = (checked(tmp_path, "model.xml", tolerance=1e-4, **term).data for term in option_sets)
@@ -121,7 +121,7 @@ def test_quick_tries_four_settings_and_all_are_run_if_asked_for_with_the_same_ca
     assert (total["error"], total["parts"]) == (every["error"], every["parts"])
 
 
-def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_does(tmp_path, monkeypatch):
+def test_the_search_for_settings_ends_at_the_goal_or_with_the_last_documented_setting(tmp_path, monkeypatch):
     monkeypatch.setattr("reports.check.checked.SEARCH_BUDGET", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
     for goal, result in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
@@ -132,7 +132,7 @@ def test_settings_are_looked_for_until_an_error_is_met_or_nothing_documented_doe
         assert sum(item["error"] <= goal for item in answer.data["tried"]) == result  # it ends with the first
 
 
-def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd, at_home):
+def test_only_a_given_tolerance_changes_the_exit_status(here, capfd, at_home):
     (here / "model.xml").write_text(FOUR_BAR)
     text = ("check", "model.xml", "--duration", 0.2, "--quick")
     for extra, status in (((), 0), (("--tolerance", 1e-5), 1), (("--tolerance", 0.5), 0), (("--fix-to", 1e-3), 0)):
@@ -151,7 +151,7 @@ def test_only_a_tolerance_that_was_asked_for_sets_the_status(here, capfd, at_hom
     assert "no model was given" in capfd.readouterr().err
 
 
-def test_a_folder_of_models_is_one_table_and_a_test_each(here, capfd, at_home):
+def test_a_folder_of_models_gives_one_table_and_a_junit_test_for_each_model(here, capfd, at_home):
     for name, text in (("a.xml", FOUR_BAR), ("b.py", PENDULUM), ("c.xml", "<mujoco/>"), ("other.xml", "<svg/>")):
         for folder in (here / ".models", here / ".models" / ".old"):  # within a folder hidden ones are left out
             folder.mkdir(exist_ok=True)

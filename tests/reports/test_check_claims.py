@@ -77,7 +77,7 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
         ([(1e-3, 1.0), (3e-5, 2.0), (9e-6, 4.0), (3e-6, 6.0)], 1, 3),
     ],
 )
-def test_the_advice_is_the_cheapest_setting_that_is_enough(soft, rows, advised, tenth):
+def test_the_advice_is_the_cheapest_setting_within_the_tolerance(soft, rows, advised, tenth):
     result = with_settings(soft, *rows, tolerance=1e-4)
     assert result.met == (rows[0][0] <= 1e-4)
     for setting, index in ((result.advised, advised), (result.decade, tenth)):
@@ -85,14 +85,14 @@ def test_the_advice_is_the_cheapest_setting_that_is_enough(soft, rows, advised, 
     assert bool(answer_section(result).code) == (advised is not None and not result.met)
 
 
-def test_the_tolerance_is_met_by_an_error_of_its_size_and_by_no_larger_one(soft):
+def test_an_error_equal_to_the_tolerance_meets_it_and_a_larger_one_does_not(soft):
     for error, met in ((1e-4, True), (1.001e-4, False)):
         assert with_settings(soft, (error, 1.0), tolerance=1e-4).met == met
     diverged = replace(soft.table[0], errors=replace(soft.own_errors, finished=False))
     assert check_data(replace(soft, table=[diverged]))["error"] is None  # infinity is no number of JSON
 
 
-def test_the_users_own_settings_are_in_the_table_however_long_they_took(soft):
+def test_the_users_settings_are_in_the_table_even_if_their_run_exhausts_the_budget(soft):
     """A run that exhausts the budget leaves no time for other settings, but is itself in the table."""
     reading, slow = soft.reading, replace(soft.own, stepping=50.0)
     truth = soft.judge.trajectory
@@ -138,7 +138,7 @@ def off_by(found: CheckResult, size: float, step: float):
     ("sizes", "falls"),
     [([4e-3, 2e-3, 1.4e-3], True), ([4e-3, 2e-3, 1.6e-3], False), ([1e-3, 2e-3], False), ([7e-3], False)],
 )
-def test_an_error_that_still_falls_is_told_from_one_that_no_longer_does(swing, sizes, falls):
+def test_an_error_that_still_decreases_is_distinguished_from_a_plateau(swing, sizes, falls):
     smaller = [off_by(swing, size, 0.01 / 2**halvings) for halvings, size in enumerate(sizes)]
     parts = split_error(swing.reading, swing.judge.trajectory, off_by(swing, 8e-3, 0.02).run, smaller)
     assert (parts.step, parts.rest, parts.falling) == (pytest.approx(8e-3), pytest.approx(sizes[-1]), falls)
@@ -175,7 +175,7 @@ def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
     assert facts.singular == ()
 
 
-def test_the_moment_in_which_a_parallelogram_is_flat_is_near_singular():
+def test_the_flat_position_of_a_parallelogram_is_near_singular():
     """The parallelogram is flat after half a turn of the crank; its rows are dependent there, and only there."""
     facts = compute_facts(*four_bar(0.3, 0.8, 0.3, 0.8, start=0.4, rate=1.0, drive=False))
     ((at, size),) = facts.singular
@@ -194,7 +194,7 @@ def test_accelerations_that_should_be_zero_are_compared_with_those_of_the_mechan
         refuse_disagreement(Reading(mechanism, cast(Any, model), ()))
 
 
-def test_what_opens_by_an_angle_is_told_in_radians():
+def test_a_violation_of_an_angle_is_reported_in_radians():
     body = Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     joints = (Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0)), Drive("motor", None, "wheel", 0.0, 0.0))
     mechanism = Mechanism((body,), joints, (0.0, 0.0))
@@ -253,7 +253,7 @@ def test_the_error_of_the_energy_is_relative_to_the_largest_kinetic_energy(soft)
     assert measure_errors(mechanism, truth, lifted).worst["energy"] == pytest.approx(weight / kinetic, rel=1e-6)
 
 
-def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_that_is_invented_is_wrong():
+def test_a_torque_that_is_zero_by_symmetry_is_not_the_scale_of_reaction_errors():
     reading = read_user_model("b04_gripper.xml", INPUTS, ReadingTerms(("actuation", "limit")))
     result = check(reading, "gripper", 0.3, 1e-4, plan=SweepPlan(5.0, quick=True))
     mechanism, truth = result.reading.mechanism, result.judge.trajectory
@@ -270,7 +270,7 @@ def test_a_torque_that_is_zero_by_symmetry_is_no_measure_of_an_error_and_one_tha
     assert measure_errors(mechanism, truth, run).worst["reaction"] > 0.05
 
 
-def test_the_error_of_a_force_does_not_depend_on_the_axes_in_which_it_is_counted():
+def test_the_error_of_a_force_does_not_depend_on_the_axes():
     scene = FreeFourBar(duration=0.3)
     mechanism = scene.mechanism()
     truth = TRUTH.build(mechanism, 1e-3)(30, 10)
@@ -282,7 +282,7 @@ def test_the_error_of_a_force_does_not_depend_on_the_axes_in_which_it_is_counted
     assert measure_errors(mechanism, ideal, stepped).worst["reaction"] == pytest.approx(measured, rel=1e-9)
 
 
-def test_the_impulse_that_starts_a_motor_is_no_error_of_forces_or_energy():
+def test_the_initial_impulse_of_a_motor_is_not_an_error_of_forces_or_energy():
     space = Space()
     space.gravity = (0, -9.81)
     crank, rod = MunkBody(1.0, 0.02), MunkBody(1.0, 0.05)
@@ -299,7 +299,7 @@ def test_the_impulse_that_starts_a_motor_is_no_error_of_forces_or_energy():
     assert counted.worst["reaction"] > 10 * error.worst["reaction"]
 
 
-def test_a_rod_that_only_the_second_order_locks_is_refused():
+def test_a_mechanism_that_only_second_order_terms_lock_is_refused():
     """A rod in line with a hinge can't bear a transverse force, but the rigid joints allow no motion."""
     space = Space()
     space.gravity = (0, -9.81)

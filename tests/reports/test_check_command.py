@@ -29,7 +29,7 @@ __all__ = ["here"]
 WRITTEN = ("html", "junit", "markdown")  # options that name a report
 
 
-def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, capfd):
+def test_a_missed_tolerance_gives_exit_status_1_and_report_files(here, capfd):
     (here / "four_bar.xml").write_text(FOUR_BAR)
     text = ("check", "four_bar.xml", "--duration", 0.2, "--html", "out.html", "--markdown", "sub/out.md", "--json")
     assert call(*text, "--tolerance", 1e-4) == 1
@@ -57,7 +57,7 @@ def test_a_model_that_misses_its_tolerance_ends_with_status_one_and_files(here, 
     ],
     ids=["endless", "aborted by Chipmunk"],
 )
-def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, text, limit, sentence):
+def test_a_script_that_exits_or_never_ends_is_reported_in_one_line(here, capfd, text, limit, sentence):
     (here / "script.py").write_text(text)
     assert call("check", "script.py:space", "--limit", limit) == 2
     out, err = capfd.readouterr()
@@ -85,7 +85,7 @@ def test_a_script_that_ends_its_process_or_never_ends_is_one_line(here, capfd, t
         (("view", "penduum_1"), "did you mean"),
     ],
 )
-def test_bad_words_are_one_line_and_nothing_is_replaced(here, capfd, words, sentence):
+def test_bad_arguments_are_reported_in_one_line_and_replace_no_file(here, capfd, words, sentence):
     (here / "a.xml").write_text("mine")
     assert call(*words) == 2
     assert [(path.name, path.read_text()) for path in here.iterdir()] == [("a.xml", "mine")]
@@ -94,7 +94,7 @@ def test_bad_words_are_one_line_and_nothing_is_replaced(here, capfd, words, sent
     assert out == ""
 
 
-def test_an_exported_script_runs_without_us_and_moves_as_the_truth_in_its_comments(here):
+def test_an_exported_script_runs_without_the_suite_and_follows_the_exact_motion_in_its_comments(here):
     assert call("export", "free_four_bar", "--to", "pymunk", "--step", 1e-4, "--out", "alone.py") == 0
     text = (here / "alone.py").read_text()
     assert "crosscheck" not in text
@@ -210,7 +210,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("word", BAD)
-def test_a_bad_model_is_one_sentence(tmp_path, word):
+def test_a_bad_model_is_refused_in_one_sentence(tmp_path, word):
     text, sentence = BAD[word]
     file = tmp_path / word.split(":")[0]
     if text is not None:
@@ -223,7 +223,7 @@ def test_a_bad_model_is_one_sentence(tmp_path, word):
     assert word.split(":")[0] in answer.sentence
 
 
-def test_a_script_runs_in_its_own_folder_with_its_own_files_and_modules(tmp_path):
+def test_a_script_can_use_files_and_modules_in_its_folder(tmp_path):
     home, paths = Path.cwd(), list(sys.path)
     (tmp_path / "length.txt").write_text("0.5")
     for name in ("csv", "reference", "local"):  # modules of Python, of this suite, and of no package
@@ -245,7 +245,7 @@ def test_a_script_runs_in_its_own_folder_with_its_own_files_and_modules(tmp_path
 
 
 @pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])
-def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
+def test_elements_are_switched_off_by_their_kind_and_an_unknown_kind_is_refused(tmp_path, element, sentence):
     (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
     answer = run_check(CheckRequest("hits.xml", str(tmp_path), 0.3, 1e-1, (element,)))
     if sentence:
@@ -259,7 +259,7 @@ def test_what_is_left_out_is_known_by_its_word(tmp_path, element, sentence):
 @pytest.mark.parametrize(
     ("switch_off", "model"), [(of_mujoco, lambda: mujoco.MjModel.from_xml_string("<mujoco/>")), (of_pymunk, Space)]
 )
-def test_the_help_names_all_that_can_be_switched_off(switch_off, model):
+def test_the_help_names_all_elements_that_can_be_switched_off(switch_off, model):
     with pytest.raises(ValueError, match="--without is 'rain'") as reported:
         switch_off(model(), "rain")
     text = str(reported.value).split("must be one of ")[1].split(", ")

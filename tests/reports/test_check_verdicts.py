@@ -156,7 +156,7 @@ def test_the_error_of_a_pymunk_script_is_that_of_an_independent_integration(name
     assert result.own_errors.worst["position"] == pytest.approx(position_error, rel=CLOSE)
 
 
-def test_a_plane_and_an_order_of_bodies_change_no_error(tmp_path):
+def test_the_error_does_not_depend_on_the_plane_or_on_the_order_of_bodies(tmp_path):
     """The excavator with its bodies in reverse order, in a plane that is oblique to all axes."""
     tree = xml.parse(INPUTS / "excavator.xml")
     world, option = tree.find("worldbody"), tree.find("option")
@@ -178,7 +178,7 @@ def test_a_plane_and_an_order_of_bodies_change_no_error(tmp_path):
     assert turned.own_errors.worst["position"] == pytest.approx(straight.own_errors.worst["position"], rel=CLOSE)
 
 
-def test_one_freedom_goes_on_through_a_dead_centre_and_is_judged_to_the_end():
+def test_a_motion_of_one_freedom_continues_through_a_dead_centre():
     result = check(read_user_model("b21_coupling_rod.xml", INPUTS), "rod", 1.0, 0.01, plan=QUICK)
     assert result.duration == 1.0
     assert not result.chaotic
@@ -188,7 +188,7 @@ def test_one_freedom_goes_on_through_a_dead_centre_and_is_judged_to_the_end():
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
-def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arrives(scale):
+def test_a_parallelogram_stays_on_its_branch_at_dead_centres(scale):
     """At a dead centre two configuration curves cross and a multiplier is undefined, but velocities are continuous."""
     crank, start = 0.2 * scale, np.arctan2(0.16, 0.12)
     names, at = ("left", "rod", "right"), (0.0, 1.0 * scale)
@@ -226,7 +226,7 @@ def test_a_parallelogram_passes_its_dead_centres_on_the_branch_on_which_it_arriv
     assert np.isfinite(judge.trajectory.reaction).all()
 
 
-def test_a_loop_that_a_weld_locks_is_said_to_be_locked_first_and_that_a_connect_was_perhaps_meant():
+def test_the_verdict_on_a_loop_that_a_weld_locks_suggests_a_connect():
     result = check(read_user_model("b23_weld_locks.xml", INPUTS), "b23_weld_locks", 0.5, 1e-4, plan=QUICK)
     assert re.search(
         r"^b23_weld_locks in MuJoCo can't move, .* \(weld C holds .*; connect, .* was perhaps meant\)", result.verdict
@@ -238,7 +238,7 @@ def test_a_loop_that_a_weld_locks_is_said_to_be_locked_first_and_that_a_connect_
 
 
 @pytest.mark.parametrize("second", ["pivot", "gear", "motor"])
-def test_a_locked_space_is_said_to_be_locked(second):
+def test_the_verdict_on_a_locked_space_states_that_it_is_locked(second):
     space = Space()
     space.gravity = (0, -G)
     body = MunkBody(2, 0.2)
@@ -255,7 +255,7 @@ def test_a_locked_space_is_said_to_be_locked(second):
 
 
 @pytest.mark.parametrize(("scale", "far"), [(1.0, 0.0), (1e-6, 1e3), (1e6, 1e3)])
-def test_no_far_point_of_a_line_enters_the_length_or_the_time(scale, far):
+def test_the_far_end_of_a_spring_along_a_slide_does_not_change_length_and_time_scale(scale, far):
     """A block in a groove of a swinging bar, with a spring and a damper whose fixed end is near or far away."""
     bar, block = (
         Body("bar", 1.0, 0.1 * scale**2, (0, 0, 0.3)),
@@ -309,7 +309,7 @@ def limited(kind: str, both_sided: bool) -> Space:
 
 
 @pytest.mark.parametrize("kind", LIMITED)
-def test_a_limit_whose_ends_are_one_is_the_joint_that_holds_it(kind):
+def test_a_limit_with_equal_ends_is_read_as_a_joint(kind):
     result = check(read_space(limited(kind, False), 1e-3), kind, 0.5, 1e-4, plan=QUICK)
     same = read_space(limited(kind, True), 1e-3).mechanism
     mechanism = result.reading.mechanism

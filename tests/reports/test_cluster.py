@@ -104,7 +104,7 @@ def test_an_item_with_other_source_files_or_none_is_not_run(tmp_path, monkeypatc
     assert "function f" in run_item(str, (str(tmp_path),), theirs)  # on the same machine it is found
 
 
-def test_without_a_scheduler_or_dask_one_line_says_so(monkeypatch):
+def test_a_missing_scheduler_or_dask_is_reported_in_one_line(monkeypatch):
     with pytest.raises(BadInput, match=r"tcp://HOST:PORT .* or local:N"), connect_cluster("local:0"):
         pass
     monkeypatch.setattr(clusters, "ANSWERS_WITHIN", 0.3)
@@ -115,6 +115,6 @@ def test_without_a_scheduler_or_dask_one_line_says_so(monkeypatch):
         pass
 
 
-def test_a_chunk_has_what_takes_its_time_together(monkeypatch):
+def test_items_are_grouped_into_chunks_by_their_expected_time(monkeypatch):
     monkeypatch.setattr(clusters, "expected_seconds", float)
     assert chunks([3.0, 1.0, 1.0, 0.5, 2.0]) == [[3.0], [1.0, 1.0], [0.5], [2.0]]

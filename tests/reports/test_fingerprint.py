@@ -47,7 +47,7 @@ def _fresh():
         ("reports/pages/four_bar/page.md", False, False),
     ],
 )
-def test_a_changed_file_of_ours_makes_rows_stale_unless_it_is_of_a_page(tmp_path, monkeypatch, path, rows, tasks):
+def test_a_changed_source_file_makes_rows_stale_unless_it_belongs_to_a_page(tmp_path, monkeypatch, path, rows, tasks):
     monkeypatch.setattr(fingerprint, "ROOT", tmp_path)
     file = tmp_path / path
     file.parent.mkdir(parents=True)
@@ -99,7 +99,7 @@ def test_a_changed_file_of_a_user_s_engine_makes_its_rows_stale(theirs, tmp_path
     assert key(Disc(), DEFAULT) == other
 
 
-def test_what_is_installed_counts_by_its_version_and_not_by_its_bytes(tmp_path, monkeypatch):
+def test_an_installed_package_counts_by_its_version_and_not_by_its_files(tmp_path, monkeypatch):
     folder = tmp_path / "site-packages"
     info = folder / "theirs-1.0.dist-info"
     info.mkdir(parents=True)
@@ -149,7 +149,7 @@ def test_every_number_of_a_cell_is_in_its_key():
     assert Motion(cell).key != Motion(others[0]).key
 
 
-def test_a_release_of_another_name_is_in_the_key_of_rows(monkeypatch):
+def test_a_release_under_another_distribution_name_changes_the_key_of_rows(monkeypatch):
     """The package mujoco is in the distribution mujoco for version 3.6, and in mujoco-core for version 4.0."""
     expected = dict(fingerprint._distributions())
     assert "pytest" not in versions_of(Disc(), DEFAULT)

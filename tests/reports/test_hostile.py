@@ -60,7 +60,7 @@ class Odd(Disc):
         pytest.param("mechanism(self):", "time.sleep(1e6)", "did not end within 10 s", marks=pytest.mark.slow),
     ],
 )
-def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, head, deed, sentence):
+def test_errors_of_a_users_scene_are_reported_in_one_line(here, monkeypatch, capfd, head, deed, sentence):
     if "sleep" in deed:  # a loaded machine imports for seconds
         monkeypatch.setattr(known, "SLEEPING", 10.0)
     (here / "odd_scene.py").write_text(f"{SCENE}    __hash__ = Disc.__hash__\n    def {head}\n        {deed}\n")
@@ -80,7 +80,7 @@ def test_what_a_scene_s_own_code_does_is_one_line(here, monkeypatch, capfd, head
         ("samples = property(lambda self: 0)", "samples is 0"),
     ],
 )
-def test_a_scene_of_no_duration_or_samples_is_refused(here, text, telling):
+def test_a_scene_without_duration_or_samples_is_refused(here, text, telling):
     path = here / f"odd_{abs(hash(text))}.py"  # a name of its own: modules stay
     path.write_text(f"{SCENE}    {text}\n")
     with pytest.raises(ValueError, match=r"\w") as reported:
@@ -124,7 +124,7 @@ def test_a_job_that_forks_is_answered_once_and_its_child_is_ended(tmp_path):
             wait_until(lambda file=file: is_free(file))
 
 
-def test_names_are_words_on_pages_and_no_formula_is_one_in_a_table():
+def test_names_with_markup_and_formulas_are_escaped_on_pages_and_in_tables():
     page = inert_page("# <script>x</script>\n<details>\n<summary>a</summary>\n\n`<b>` <!-- c -->\n```\n<b>\n```\n")
     assert page == "# &lt;script>x&lt;/script>\n<details>\n<summary>a</summary>\n\n`<b>` <!-- c -->\n```\n<b>\n```\n"
     row = replace(
@@ -137,7 +137,7 @@ def test_names_are_words_on_pages_and_no_formula_is_one_in_a_table():
     assert ",-1," in line
 
 
-def test_names_are_words_on_the_site():
+def test_names_with_markup_are_escaped_on_the_site():
     pytest.importorskip("mdit_py_plugins", reason="MyST is not installed: pip install '.[site]'")
     site = render_html("# <script>x</script>\n\n| <img src=x onerror=y> |\n|--|\n| <!--><iframe> `<b>` |\n")
     assert set(re.findall(r"<[/!]?[\w-]+", site)) == {"<h1", "</h1", "<table", "</table", "<!--"} | {
@@ -145,7 +145,7 @@ def test_names_are_words_on_the_site():
     }
 
 
-def test_a_page_of_a_scene_with_tags_in_its_name_has_none():
+def test_tags_in_the_name_of_a_scene_are_escaped_on_its_page():
     odd = replace(Disc(), rate=3.0)
     vars(odd)["name"] = "<script>alert(1)</script>"
     page = catalogue.generic_page(odd, (Toy(),))
@@ -177,7 +177,7 @@ def wrong_line(chance: random.Random) -> list[str]:
     return text  # each has something that no command takes: a right one would do its work
 
 
-def test_a_wrong_command_line_is_one_line(here, capfd):
+def test_a_wrong_command_line_is_reported_in_one_line(here, capfd):
     chance = random.Random(22)
     for _ in range(40):
         text = wrong_line(chance)
@@ -206,7 +206,7 @@ def test_a_wrong_command_line_is_one_line(here, capfd):
         ("report", "--results", "/dev/null/folder"),
     ],
 )
-def test_what_once_ended_in_a_traceback_is_one_line(words, here, capfd):
+def test_input_that_once_caused_a_traceback_is_refused_in_one_line(words, here, capfd):
     assert call(*words) == REFUSED
     err = capfd.readouterr().err
     assert err.startswith("crosscheck: ")
@@ -215,7 +215,7 @@ def test_what_once_ended_in_a_traceback_is_one_line(words, here, capfd):
     assert list(here.iterdir()) == []
 
 
-def test_a_file_called_minus_is_standard_output(here, capfd):
+def test_a_file_named_minus_is_the_standard_output(here, capfd):
     assert call("export", "free_four_bar", "--out", "-") == FINE
     written = capfd.readouterr().out
     assert call("export", "free_four_bar") == FINE
@@ -223,7 +223,7 @@ def test_a_file_called_minus_is_standard_output(here, capfd):
     assert list(here.iterdir()) == []
 
 
-def test_results_in_a_file_are_refused_without_advice_to_write_there(here, capfd):
+def test_a_folder_of_results_that_is_a_file_is_refused(here, capfd):
     (here / "file").write_text("mine")
     assert call("show", "free_four_bar", "--results", "file") == REFUSED
     assert "'file', and file is a file; give a folder" in capfd.readouterr().err
@@ -258,7 +258,7 @@ def test_every_number_of_every_scene_gives_a_finite_start_or_a_refusal(scene: Sc
         ("free_four_bar", "coupler", "1e-200", "the loop can't close"),
     ],
 )
-def test_settings_without_a_mechanism_are_refused_by_the_promised_exception(name, number, text, reason):
+def test_settings_without_a_mechanism_are_refused_with_invalid_mechanism(name, number, text, reason):
     with pytest.raises(InvalidMechanism, match=rf"(?s){reason}"):
         with_settings(BY_NAME[name], {number: text})
 
@@ -271,7 +271,7 @@ def test_settings_without_a_mechanism_are_refused_by_the_promised_exception(name
         ("cart", "trail", "the reactions that its accelerations need are not finite"),
     ],
 )
-def test_a_motion_that_can_not_be_computed_is_held_against_no_engine(name, number, reason):
+def test_a_missing_exact_motion_is_not_counted_as_an_error_of_the_engine(name, number, reason):
     scene = with_settings(BY_NAME[name], {number: "1e200"})
     with pytest.raises(NoMotion, match=rf"scene '{name} {number}=1e\+200': no motion is known up to .*{reason}"):
         scene.motion(np.linspace(0.0, scene.duration, 3))
@@ -304,11 +304,11 @@ def test_a_users_truth_that_is_not_finite_is_refused_by_name_and_the_engine_is_n
     assert row.sentence.startswith("scene 'wrong': no motion is known up to ")
 
 
-def test_a_reaction_that_nobody_knows_is_no_refusal():
+def test_an_unknown_reaction_in_the_exact_motion_is_accepted():
     assert measure(Cell(Wrong(how="reaction=nan"), Given(disc()), 1), repeat=False).outcome == "finished"
 
 
-def test_a_scene_whose_arithmetic_fails_refuses_its_mechanism_in_words():
+def test_an_arithmetic_error_in_a_scene_is_refused_in_a_sentence():
     @dataclass(frozen=True)
     class Heavy(Disc):
         name: ClassVar[str] = "heavy"

@@ -27,7 +27,7 @@ POINTS = {"A": (0, 0), "B": (0, 0.3), "C": (0.8, 0.6), "D": (0.7, 0)}
 BARS = {"crank": "AB", "coupler": "BC", "rocker": "DC"}
 
 
-def test_the_lines_of_the_modules_first_words_run_as_they_stand(tmp_path, monkeypatch):
+def test_the_example_in_the_module_docstring_runs(tmp_path, monkeypatch):
     (tmp_path / "model.xml").write_text(FOUR_BAR)
     monkeypatch.chdir(tmp_path)
     lines = re.findall(r"^    (.*)$", str(planar_crosscheck.__doc__), re.MULTILINE)
@@ -44,7 +44,7 @@ def test_the_lines_of_the_modules_first_words_run_as_they_stand(tmp_path, monkey
         assert text in displayed
 
 
-def test_a_linkage_is_bars_between_points_that_stand_where_they_are_said_to():
+def test_a_linkage_has_its_bars_between_the_given_points():
     result = linkage(POINTS, BARS, "AD")
     for body, (first, second) in zip(result.bodies, BARS.values(), strict=True):
         x, y, angle = body.pose
@@ -80,7 +80,7 @@ def test_an_invalid_linkage_is_refused_in_a_sentence(points, bars, ground, sente
         linkage(points, bars, ground)
 
 
-def test_a_comparison_is_the_engines_run_beside_the_scenes_own_truth(monkeypatch):
+def test_a_comparison_has_the_run_of_the_engine_and_the_exact_motion(monkeypatch):
     scene = FreeFourBar()
     result = planar_crosscheck.compare(scene.mechanism(), "pymunk tuned", dt=1e-3, duration=0.5)
     assert len(result.run.t) == 251  # about SAMPLES, and whole numbers of steps apart
@@ -121,7 +121,7 @@ def test_models_are_read_as_files_and_as_objects(tmp_path):
         planar_crosscheck.check({})
 
 
-def test_a_search_returns_the_cases_and_keeps_them_in_a_store(tmp_path, at_home):
+def test_a_search_returns_its_cases_and_stores_them(tmp_path, at_home):
     cases = planar_crosscheck.search("lagrange", "rk4 projection", cases=2, seed=1, results=tmp_path)
     assert [case.number for case in cases] == [0, 1]
     assert (tmp_path / "search" / "cells.sqlite").is_file()
@@ -146,7 +146,7 @@ def test_engine(crosscheck):
 """
 
 
-def test_a_test_of_anybodys_passes_fails_with_the_lines_to_paste_and_says_what_is_missing(pytester, monkeypatch):
+def test_the_pytest_fixture_passes_or_fails_with_advised_lines_or_a_reason(pytester, monkeypatch):
     monkeypatch.setattr(engines.conformance, "CHECKS", tuple(check for check in CHECKS if check.name in FEW))
     pytester.makeconftest('pytest_plugins = ["planar_crosscheck_pytest"]')
     folder = pytester.mkdir("sub")

@@ -120,7 +120,7 @@ def test_each_offset_is_the_error_of_its_own_quantities_and_of_no_other(name):
     assert nonzero == pytest.approx(expected, rel=1e-12)
 
 
-def test_errors_without_a_scale_or_without_data_are_unknown():
+def test_errors_without_a_scale_or_without_data_are_nan():
     at_rest = replace(TRUTH, twist=np.zeros_like(TRUTH.twist))
     assert math.isnan(motion_errors(SCENE, MECHANISM, at_rest, TRUTH)["energy"])
     assert math.isnan(errors(replace(TRUTH, reaction=np.full_like(TRUTH.reaction, math.nan)))["reaction"])
@@ -147,7 +147,7 @@ def test_samples_count_until_the_first_pose_or_twist_that_is_not_finite(name, va
     assert usable_samples(moved(reaction=[((0, 0), np.nan)])) == 4  # an unknown reaction is no failure
 
 
-def test_a_change_of_assembly_is_counted_each_time_and_one_of_the_truth_is_none():
+def test_changes_of_assembly_count_relative_to_the_exact_motion():
     scene = Disc()
     truth = scene.motion(TIMES)
 
@@ -206,7 +206,7 @@ def shifted(column: int, offset, start: int = 0) -> Trajectory:
     return trajectory
 
 
-def test_every_field_of_a_measured_row_is_its_own():
+def test_every_field_of_a_measured_row_has_its_own_value():
     """Every quantity of the motion has a different error, and each field is computed by hand."""
     t = np.linspace(0, SCENE.duration, SCENE.samples + 1)
     truth = SCENE.motion(t)
@@ -275,7 +275,7 @@ def test_every_field_of_a_measured_row_is_its_own():
     assert reported == pytest.approx({name: value for name, value in expected.items() if name not in text}, rel=1e-9)
 
 
-def test_the_truth_is_at_an_engine_s_own_instants():
+def test_the_exact_motion_is_computed_at_the_instants_of_the_engine():
     late = INSTANTS * (1 + 1e-9)  # more than the rounding of steps
     result = measure(Cell(DISC, Given(DISC.motion(late)), 1), repeat=False)
     assert result.angle < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(INSTANTS).pose).max()

@@ -66,7 +66,7 @@ def cut(count):
         (disc(stepping=math.nan), "stepping = nan s", "CPU seconds from 0 on"),
     ],
 )
-def test_what_is_no_motion_at_the_instants_asked_for_has_no_errors_and_a_sentence(trajectory, found, expected):
+def test_a_result_without_a_motion_at_the_requested_instants_is_failed_with_a_sentence(trajectory, found, expected):
     row = measure(Cell(DISC, Given(trajectory), 1), repeat=False)
     assert (row.outcome, row.sentence) == (
         "failed",
@@ -99,7 +99,7 @@ def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) ->
     return of_motion(values, DISC.mechanism(), trajectory, count)[0]
 
 
-def test_the_gravest_finding_determines_the_outcome():
+def test_the_gravest_defect_determines_the_outcome():
     """A row with all defects has the gravest outcome; without that defect it has the next one."""
     everything = {"gap": 2 * BLOWN * LENGTH, "drive_gap": 1.0, "flips": 2, "angle": 1.0, "angle_duration": 1.0}
     assert told(disc(reset_at=0.1), 5, **everything) == "reset"
@@ -128,7 +128,7 @@ def test_only_the_engines_own_words_count_as_a_warning(warnings, quiet):
     assert all(warning in sentence for warning in warnings)
 
 
-def test_where_the_textbook_refuses_there_is_no_error_and_the_sentence_says_so():
+def test_a_refused_exact_motion_gives_no_errors_and_a_sentence():
     result = measure(Cell(ImpossibleDisc(), Given(disc(warnings=("a warning",))), 1), repeat=False)
     assert (result.outcome, result.sentence) == ("finished", "the reference refuses: no such motion; a warning")
     assert result.gap == 0.0

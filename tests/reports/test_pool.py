@@ -51,7 +51,7 @@ LEAVES = (
 )
 
 
-def test_each_way_to_fail_is_an_outcome_of_its_own_and_sound_cells_keep_their_numbers():
+def test_each_failure_has_its_own_outcome_and_does_not_change_other_cells():
     sound = {Toy(factor=float(index)): index for index in range(1, 6)}
     cells = [Cell(Disc(), toy, 1) for toy in (*ENDS, *sound)]
     rows = {row.settings: row for row in run_cells(cells, limit=0.5, workers=2)}
@@ -65,7 +65,7 @@ def test_each_way_to_fail_is_an_outcome_of_its_own_and_sound_cells_keep_their_nu
     assert (row.outcome, row.sentence) == ("timed out", "did not end within 1 s, and used less than 60 s of CPU time")
 
 
-def test_no_change_of_a_process_by_a_job_reaches_the_next_one(capfd):
+def test_a_job_that_changes_its_process_does_not_affect_the_next_job(capfd):
     items = ["process", "process", *(name for action in LEAVES for name in (action, "process"))]
     answers = list(supervise(act, items, limit=60.0, workers=1))
     assert [item for item, *_ in answers] == items
@@ -250,7 +250,7 @@ def test_after_a_kill_the_next_run_continues_where_it_stopped(tmp_path):
         assert missing([Cell(Disc(), Toy(), every) for every in (1, 2, 3, 4)], store) == ()
 
 
-def test_only_what_is_not_stored_is_run_and_a_timeout_again_with_more_time_alone(tmp_path):
+def test_only_missing_cells_are_run_and_timed_out_ones_only_with_a_larger_limit(tmp_path):
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2)]
     items = [cells[0], Motion(cells[0])]
     path = tmp_path / "cells.sqlite"
@@ -297,7 +297,7 @@ class Aborting(Wrong):
 ABORTING = Aborting("aborts where a step is zero")
 
 
-def test_an_abort_ends_one_check_of_conform_and_not_the_program(capfd):
+def test_an_abort_fails_one_check_of_conform_and_does_not_end_the_program(capfd):
     with pytest.raises(SystemExit) as ended:
         main(["conform", "tests.reports.test_pool:ABORTING"])
     captured = capfd.readouterr()
@@ -306,7 +306,7 @@ def test_an_abort_ends_one_check_of_conform_and_not_the_program(capfd):
     assert "signal 6 (SIGABRT): Aborting due to Wrong error: dt is zero" in failed
 
 
-def test_a_check_of_conform_that_never_ends_fails_in_the_mechanism_in_which_it_was(monkeypatch):
+def test_a_check_of_conform_that_never_ends_fails_with_the_name_of_its_mechanism(monkeypatch):
     def hanging(function, questions, limit, workers):
         for question in questions:
             Path(question.notes, question.check).write_text("0", encoding="utf-8")

@@ -82,7 +82,7 @@ def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before
     assert getattr(csv_files.with_published_numbers(beyond, before, True), name) != published
 
 
-def test_a_new_row_or_another_outcome_keeps_no_published_number(before):
+def test_a_new_row_or_a_changed_outcome_does_not_get_published_numbers(before):
     moved = replace(ROW, position=ROW.position * (1 + 1e-12), cpu=1.01 * ROW.cpu)
     torn = csv_files.with_published_numbers(replace(moved, outcome=Outcome.TORN), before, True)
     assert torn.cpu == csv_files.with_published_numbers(moved, {}, True).cpu == float(f"{1.01 * ROW.cpu:.4g}")

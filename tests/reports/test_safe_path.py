@@ -48,14 +48,14 @@ def test_no_process_imports_a_file_of_the_current_folder(hostile):
     assert not (hostile / "executed").exists()
 
 
-def test_as_a_module_the_program_leaves_the_current_folder_off_its_path(tmp_path):
+def test_python_dash_m_does_not_put_the_current_folder_on_the_path(tmp_path):
     (tmp_path / "csv.py").write_text("raise ValueError('hidden')")
     (tmp_path / "numpy.py").write_text("raise ValueError('hidden')")
     done = ended(tmp_path, "-m", "reports", "show", "free_four_bar")
     assert "crosscheck run free_four_bar" in one_line(done.stderr)
 
 
-def test_a_worker_whose_path_has_another_package_of_our_name_says_so(tmp_path):
+def test_a_worker_reports_another_package_with_a_name_of_ours(tmp_path):
     """The path changes after the parent has imported our package, so that a new worker would import the other one."""
     (tmp_path / "engines").mkdir()
     (tmp_path / "engines" / "__init__.py").write_text("")
@@ -76,7 +76,7 @@ class Importing(Toy):
         return nothing
 
 
-def test_a_row_whose_cause_is_an_import_is_not_stored(tmp_path):
+def test_the_row_of_a_failed_import_is_not_stored(tmp_path):
     cells = [Cell(Disc(), Importing("importing"), 1), Cell(Disc(), Toy(), 1)]
     with Store(tmp_path / "cells.sqlite") as store:
         with pytest.raises(WorkersLost, match=r"1 of 2 cells are lost.*No module named 'nowhere'"):
@@ -84,6 +84,6 @@ def test_a_row_whose_cause_is_an_import_is_not_stored(tmp_path):
         assert set(store.get(cells)) == {cells[1]}
 
 
-def test_a_version_s_process_has_no_current_folder_on_its_path_either(hostile, monkeypatch):
+def test_the_process_of_a_version_does_not_have_the_current_folder_on_its_path(hostile, monkeypatch):
     monkeypatch.chdir(hostile)
     assert of_a_version(hostile)["PYTHONSAFEPATH"]

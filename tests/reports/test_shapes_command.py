@@ -53,7 +53,7 @@ def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, ca
     assert "gives the motion back" in capfd.readouterr().out
 
 
-def test_files_that_are_there_stay_unless_forced_and_links_are_not_followed(tmp_path, capfd):
+def test_existing_files_are_replaced_only_with_force_and_links_are_not_followed(tmp_path, capfd):
     motion, mine = tmp_path / "ladder.csv", tmp_path / "mine"
     motion.write_text(as_text(ladder()))
     mine.write_text("mine")
@@ -86,9 +86,7 @@ def test_a_coarse_table_gives_a_warning_and_a_fine_one_does_not(tmp_path, capfd)
         assert ("too far apart" in capfd.readouterr().out) is coarse
 
 
-def test_dxf_is_no_default_and_without_its_package_it_is_refused_before_anything_is_written(
-    tmp_path, monkeypatch, capfd
-):
+def test_dxf_is_not_a_default_and_is_refused_without_its_package(tmp_path, monkeypatch, capfd):
     motion = tmp_path / "ladder.csv"
     motion.write_text(as_text(ladder()))
     monkeypatch.setitem(sys.modules, "ezdxf", None)
@@ -126,7 +124,7 @@ TABLES = {
 
 
 @pytest.mark.parametrize("case", TABLES)
-def test_a_table_without_shapes_is_one_line_with_its_reason_and_writes_nothing(case, tmp_path, capfd):
+def test_a_table_without_shapes_is_refused_in_one_line(case, tmp_path, capfd):
     text, telling = TABLES[case]
     (tmp_path / "motion.csv").write_text(text)
     assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path / "out") == 2
@@ -137,7 +135,7 @@ def test_a_table_without_shapes_is_one_line_with_its_reason_and_writes_nothing(c
     assert not (tmp_path / "out").exists()
 
 
-def test_files_that_can_not_be_read_or_written_and_wrong_options_are_one_line(tmp_path, capfd):
+def test_unreadable_files_and_wrong_options_are_refused_in_one_line(tmp_path, capfd):
     (tmp_path / "picture.csv").write_bytes(b"\x89PNG\r\n\xff\xfe\x00")
     good = tmp_path / "ladder.csv"
     good.write_text(as_text(ladder()))
@@ -155,7 +153,7 @@ def test_files_that_can_not_be_read_or_written_and_wrong_options_are_one_line(tm
         assert telling in err.lower() or telling in err
 
 
-def test_the_pages_example_runs_as_it_stands(tmp_path, monkeypatch, capfd):
+def test_the_example_on_the_page_runs(tmp_path, monkeypatch, capfd):
     page = (TEMPLATES / "centrodes" / "page.md").read_text()
     [script] = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     [shell] = re.findall(r"```sh\n(.*?)```", page, re.DOTALL)

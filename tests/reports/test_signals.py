@@ -38,7 +38,7 @@ def listening():
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
-def test_a_folder_is_gone_afterwards_also_with_an_error_and_sockets_have_a_short_path(tmp_path, monkeypatch):
+def test_a_temporary_folder_is_removed_after_an_error_and_paths_of_sockets_are_short(tmp_path, monkeypatch):
     def fails():
         with temporary_folder(tmp_path) as folder:
             (folder / "below").mkdir()
@@ -57,7 +57,7 @@ def test_a_folder_is_gone_afterwards_also_with_an_error_and_sockets_have_a_short
     assert not folder.exists()
 
 
-def test_a_signal_leaves_no_folder_and_is_the_status(tmp_path):
+def test_a_signal_leaves_no_folder_and_determines_the_exit_status(tmp_path):
     text = [sys.executable, "-c", HOLDS, tmp_path]
     process = subprocess.Popen(text, env=environment(), stdout=subprocess.PIPE, text=True, preexec_fn=listening)
     assert process.stdout is not None
@@ -89,7 +89,7 @@ runpy.run_module("reports", run_name="__main__", alter_sys=True)
 
 
 @pytest.mark.parametrize("moment", [5, 300])  # before the program's own modules, and while compiled ones are imported
-def test_ctrl_c_at_an_import_is_status_130_without_a_word(moment):
+def test_ctrl_c_during_an_import_gives_exit_status_130_without_a_message(moment):
     process = subprocess.run(
         [sys.executable, "-c", INTERRUPTS_ITSELF, str(moment), "run", "no_scene"],
         env=environment(),
@@ -100,7 +100,7 @@ def test_ctrl_c_at_an_import_is_status_130_without_a_word(moment):
     assert (process.returncode, process.stdout, process.stderr) == (INTERRUPTED, "", "")
 
 
-def test_ctrl_c_in_a_run_says_what_is_stored(tmp_path):
+def test_ctrl_c_during_a_run_reports_the_number_of_stored_cells(tmp_path):
     """As on a terminal, the whole process group gets the signal, and workers must not print a traceback."""
     text = ["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--results", str(tmp_path)]
     process = subprocess.Popen(

@@ -92,7 +92,7 @@ def altered(**changes):
 
 
 @pytest.mark.parametrize("text", [b"\xff\xfe\x00", altered()[:-20], altered(colour=1), altered(outcome="melted")])
-def test_a_row_that_can_not_be_read_is_missing_and_can_be_put_again(tmp_path, text):
+def test_an_unreadable_row_counts_as_missing_and_can_be_replaced(tmp_path, text):
     path = filled(tmp_path / "cells.sqlite", CELLS[:3])
     rewritten(path, text)
     with Store(path) as store:
@@ -102,7 +102,7 @@ def test_a_row_that_can_not_be_read_is_missing_and_can_be_put_again(tmp_path, te
 
 
 @pytest.mark.parametrize("kind", ["middle", "text", "empty, with rows beside it"])
-def test_a_damaged_store_is_put_aside_and_the_run_continues(tmp_path, kind):
+def test_a_damaged_store_is_renamed_and_the_run_continues(tmp_path, kind):
     path = filled(tmp_path / "cells.sqlite")
     data, random = path.read_bytes(), np.random.default_rng(2).bytes(5000)
     middle = len(data) // 2
@@ -135,7 +135,7 @@ def test_a_damaged_store_is_put_aside_and_the_run_continues(tmp_path, kind):
         ("", "file"),
     ],
 )
-def test_a_file_that_is_no_store_is_refused_and_not_changed(tmp_path, statement, telling):
+def test_another_file_in_place_of_a_store_is_refused_and_not_changed(tmp_path, statement, telling):
     path = tmp_path / "cells.sqlite"
     if statement.startswith("pragma"):
         filled(path, CELLS[:2])
@@ -153,7 +153,7 @@ def test_a_file_that_is_no_store_is_refused_and_not_changed(tmp_path, statement,
     assert path.is_dir() if old is None else path.read_bytes() == old
 
 
-def test_a_store_that_another_process_locks_is_a_sentence_and_keeps_its_rows(tmp_path, monkeypatch):
+def test_a_store_locked_by_another_process_is_refused_in_a_sentence_and_keeps_its_rows(tmp_path, monkeypatch):
     monkeypatch.setattr(store_module, "WAIT", 0.1)
     path = filled(tmp_path / "cells.sqlite", CELLS[:2])
     with closing(sqlite3.connect(path, isolation_level=None)) as other, Store(path) as store:
@@ -209,7 +209,7 @@ def test_a_full_disk_keeps_the_rows_and_the_pages_that_are_there(tmp_path):
     assert names(tmp_path) <= {"a.md", "b.md", "cells.sqlite", "cells.sqlite-wal", "cells.sqlite-shm"}
 
 
-def test_a_store_that_was_removed_while_it_was_written_says_so_at_the_next_row(tmp_path):
+def test_a_store_that_was_removed_during_a_run_is_reported_at_the_next_row(tmp_path):
     path = tmp_path / "results" / "cells.sqlite"
     with Store(path) as store:
         store.put(row(CELLS[0]))

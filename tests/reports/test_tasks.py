@@ -52,7 +52,7 @@ def motion(variant: str = "", every: int = 1) -> Motion:
     return Motion(Cell(Disc(), FailingToy(variant) if variant else Toy(), every))
 
 
-def test_a_task_is_kept_to_the_last_bit_and_run_once_beside_cells(tmp_path):
+def test_an_answer_is_stored_to_the_last_bit_and_its_task_is_run_once(tmp_path):
     cell, tasks = Cell(Disc(), Toy(), 1), [Sum((0.1, 0.2, np.nan)), Sum((1 / 3,)), motion()]
     results = []
     with Store(tmp_path / "cells.sqlite") as store:
@@ -88,7 +88,7 @@ ENDS = {
 }
 
 
-def test_the_end_of_a_task_is_its_answer_and_is_stored_too(tmp_path):
+def test_the_outcome_of_a_failed_task_is_stored(tmp_path):
     with Store(tmp_path / "cells.sqlite") as store:
         run_into(store, [*ENDS])
         answers = store.answers(ENDS)
@@ -139,7 +139,7 @@ def test_a_page_is_written_without_engines(name, monkeypatch):
     assert render_page(page, material, "the command")
 
 
-def test_an_exact_motion_is_stored_to_the_last_bit_and_a_damaged_file_costs_time_alone(tmp_path, monkeypatch):
+def test_an_exact_motion_is_stored_to_the_last_bit_and_a_damaged_file_is_computed_again(tmp_path, monkeypatch):
     monkeypatch.setattr(measuring, "SHORT_MOTION", -1.0)
     scene, t = LinkPendulum(links=2), np.linspace(0.0, 0.5, 6).tobytes()
     motion = measuring._motion.__wrapped__
@@ -160,7 +160,7 @@ def test_an_exact_motion_is_stored_to_the_last_bit_and_a_damaged_file_costs_time
     assert motion(scene, t, "name", tmp_path / "none").pose.shape == (6, 2, 3)
 
 
-def test_a_run_stores_motions_beside_its_store_and_measures_alike_with_them(tmp_path, monkeypatch):
+def test_a_run_stores_exact_motions_and_gives_the_same_rows_with_them(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(measuring, "SHORT_MOTION", -1.0)
     cell = Cell(Disc(), Toy(), 1)

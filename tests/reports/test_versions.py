@@ -60,7 +60,7 @@ def entry(version, error, scene="disc", outcome="finished", quantity="angle", en
     return Entry(engine, version, scene, "tuned", 1e-3, quantity, error, outcome, 0.01, "")
 
 
-def test_changes_are_found_in_the_errors_alone():
+def test_changes_between_versions_are_found_from_the_errors():
     line = [("3.9.0", 1e-3), ("3.10.0", 2.9e-3), ("4.0.0", 9e-3), ("4.0.1", 1e-3), ("3.1.0", NAN)]
     entries = [entry(v, e, outcome="unsupported" if e != e else "finished") for v, e in line]
     entries += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # both are rounding
@@ -106,7 +106,7 @@ def row(angle, outcome=Outcome.FINISHED, every=1, cpu=1.0):
     return replace(blank(Cell(Disc(), Lagrange(), every), outcome), angle=angle, cpu=cpu)
 
 
-def test_worse_is_more_than_three_times_as_large_and_cost_and_orders_are_compared():
+def test_an_error_three_times_as_large_is_worse_and_costs_and_orders_are_compared():
     earlier = [row(1e-3), row(1e-4, every=10)]
     assert not compared(earlier, [row(2.9e-3, cpu=2.0), row(1e-4, every=10, cpu=2.0)]).differences
     comparison = compared(earlier, [row(3.1e-3, cpu=2.0), row(1e-5, every=10, cpu=2.0)])
@@ -147,7 +147,7 @@ def test_the_verdict_on_a_method_follows_its_outcome_before_its_error(capsys, be
         assert (cells["what changed most"], cells["old==1"], cells["new==2"]) == ("angle [rad]", "1e-3", "1e-3")
 
 
-def test_random_trees_tell_ideal_constraints_from_wrong_ones():
+def test_random_trees_distinguish_ideal_constraints_from_wrong_ones():
     three_trees = trees(6, 2, 3)
     assert len({tree.pose.tobytes() for tree in three_trees}) == 3
     # Two formulations of the ideal joints differ only by the error of a step of 1e-5 of the time scale.
@@ -213,7 +213,7 @@ def once(monkeypatch):
 
 
 @pytest.mark.usefixtures("once")
-def test_a_worse_build_is_reported_and_a_dearer_one_above_a_limit_and_its_output_is_contained(here, capfd):
+def test_a_worse_or_slower_build_is_reported_and_its_output_is_contained(here, capfd):
     toy(here, "1.0", "def error(): return 1.0\n")
     toy(here, "2.0", LOUD)
     with pytest.raises(Broken, match=r"2\.0 .*is worse than toyengine 1\.0 .*in 3 numbers"):
