@@ -2,11 +2,11 @@
 PYTHON ?= python3
 BIN := .venv/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check
-# One worker of pytest a processor, with one thread each. The tests of a file run in one worker, so that they share
-# fixtures; tests/conftest.py lists the files that start first. The grid has its own pool, and runs after the tests.
+# pytest has a worker with one thread for each processor. The tests of a file run in the same worker and share fixtures.
+# tests/conftest.py lists the files that start first. The grid has its own pool and runs after the tests.
 WORKERS := -n auto --dist loadfile --no-loadscope-reorder
 export OMP_NUM_THREADS ?= 1
-# The tests start many programs, each of which would compile every module again.
+# The tests start many programs. Without stored bytecode, each program would compile every module.
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report test publish slow check bench mutants search lower clean
@@ -26,7 +26,7 @@ publish: .venv/installed-mjx     ## for maintainers: all engines and releases, i
 	$(BIN)/crosscheck search --published
 	$(BIN)/crosscheck report --publish
 
-slow: .venv/installed            ## the tests that take minutes each: all bad arguments, 200 kills, every wrong model
+slow: .venv/installed            ## the tests that take minutes each, such as 200 killed workers and every wrong model
 	$(BIN)/python -m pytest $(WORKERS) -m slow
 
 check: .venv/installed-develop   ## style, types, layers
@@ -35,12 +35,12 @@ check: .venv/installed-develop   ## style, types, layers
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-bench: .venv/installed-bench     ## stepping compared with bare loops, and the site in a browser
+bench: .venv/installed-bench     ## CPU time of stepping compared with plain loops, and the site in a browser
 	$(BIN)/crosscheck site
 	$(BIN)/crosscheck bench
 	$(BIN)/crosscheck bench site
 
-mutants: .venv/installed         ## deliberate mistakes, and those that no test detects; ONLY=engines/pymunk selects by path
+mutants: .venv/installed         ## apply deliberate mistakes and list those that no test detects; ONLY=engines/pymunk selects by path
 	$(BIN)/python -m tests.tools.mutants $(ONLY)
 
 SECONDS ?= 600

@@ -225,7 +225,7 @@ class _Case:
     def resolved(self, parts: int) -> bool:
         """Whether a textbook method of the declared order (at most 4) converges with that order in two halvings.
 
-        A counterexample is a spring whose length passes zero within a step, so that its force is reversed.
+        No method converges, for example, if the length of a spring passes zero within a step and reverses its force.
         """
         usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
         spacing, parts = MOTION_SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)

@@ -85,7 +85,7 @@ def test_poses_velocities_inertias_and_accelerations_scale_with_the_units(kind):
         assert np.allclose(scaled.twist, plain.twist * [1e-4, 1e-4, 0.1], rtol=1e-9, atol=1e-12 * speed)
         assert np.allclose(scaled.inertias, plain.inertias * [1e2, 1e2, 1e-4], rtol=1e-12)
         earlier, later = (single.unconstrained(single.pose, single.twist) for single in (plain, scaled))
-        size = np.array([1e-5, 1e-5, 1e-2])  # m/s^2 and rad/s^2: 1e-3 / 10^2, 1 / 10^2
+        size = np.array([1e-5, 1e-5, 1e-2])  # scales of accelerations: 1e-3 / 10^2 for m/s^2, 1 / 10^2 for rad/s^2
         largest = np.abs(earlier).max(axis=(0, 1)) + np.abs(plain.twist).max() + 1
         assert np.allclose(later / size, earlier, rtol=1e-9, atol=1e-11 * largest)
         if plain.length_scale != 1:  # 1 m is the default scale of a mechanism without lengths

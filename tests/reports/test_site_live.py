@@ -54,7 +54,7 @@ def test_experiments_and_their_texts_use_existing_controls(lesson):
         for values in (experiment.before, experiment.after, *(change for change, _ in experiment.causes)):
             assert len(live.located(values)) == len(values)
         assert bool(part.question) == bool(experiment.after), part.heading
-        # A change of the method has a claim. A change of the mechanism changes the exact motion and needs none.
+        # Every experiment that changes settings of an engine has a claim on the error.
         assert experiment.claims or not set(experiment.after) - {slider.field for slider in live.sliders}, part.heading
         numbers = re.findall(r"{(\w+)}", part.text + part.after)
         assert set(numbers) <= set(live.controls()), part.heading
