@@ -1,4 +1,4 @@
-"""Linkages, closed as complex numbers, motions in closed form, ellipses and cams, in fifty digits."""
+"""Formulas in fifty digits for linkages, pendulums, chains, tows, sleighs, ellipses and cams."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from tests.reference.law import Law, Outside, angle, decades
 
 
 def root(square: Any) -> Any:
-    """The square root, of a number that must not be negative."""
+    """The square root of a number; raises Outside if the number is negative."""
     if square < 0:
         raise Outside
     return mp.sqrt(square)
 
 
 def solved(rows: list[list[Any]], right: list[Any]) -> list[Any]:
-    """x of rows x = right."""
+    """The solution x of the linear system rows x = right."""
     return list(mp.lu_solve(mp.matrix(rows), mp.matrix(right)))
 
 
 def closed(crank: Any, coupler: Any, rocker: Any, x: Any, y: Any, theta: Any, branch: int) -> tuple[Any, ...]:
-    """The bars as complex numbers."""
+    """Crank, coupler and rocker as complex numbers."""
     bar, ground = crank * mp.expj(theta), mp.mpc(x, y)
     span = abs(ground - bar)
     foot = (span**2 + coupler**2 - rocker**2) / (2 * span)
@@ -55,14 +55,14 @@ def four_bar(branch: int) -> Law:
 
 
 def drawn_four_bar(rng: np.random.Generator) -> tuple[float, ...]:
-    """Lengths and a crank angle that close; half of the times nearly stretched or nearly folded."""
+    """Random lengths and a crank angle at which the loop closes; half of them are near a crank limit."""
     scale, theta = decades(rng), angle(rng)
     crank, ground, heading = decades(rng, -2, 2), decades(rng, -2, 2), rng.uniform(-math.pi, math.pi)
     if rng.random() < 0.3:
         heading = 0.0
     x, y = ground * math.cos(heading), ground * math.sin(heading)
     span = abs(complex(x, y) - crank * complex(math.cos(theta), math.sin(theta)))
-    if rng.random() < 0.5:  # coupler and rocker are longer than the span by little or by much
+    if rng.random() < 0.5:  # coupler + rocker exceeds the span by a random amount
         whole, part = span * (1 + decades(rng, -14, 1)), rng.random()
         coupler, rocker = whole * part, whole * (1 - part)
         if abs(coupler - rocker) > span:
@@ -77,7 +77,7 @@ def drawn_four_bar(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def limits(crank, coupler, rocker, x, y):
-    """The crank's end by the cosine rule, from the direction of the ground: coupler and rocker are in line."""
+    """The crank angle at which coupler and rocker are in line, from the direction of the ground, by the cosine rule."""
     ground = mp.hypot(x, y)
     cosine = (crank**2 + ground**2 - (coupler + rocker) ** 2) / (2 * crank * ground)
     if abs(cosine) >= 1:
@@ -96,7 +96,8 @@ def our_limits(crank, coupler, rocker, x, y):
 def drawn_limits(rng: np.random.Generator) -> tuple[float, ...]:
     scale = decades(rng)
     crank, ground = decades(rng, -2, 2), decades(rng, -2, 2)
-    # From |crank - ground|, where the range is a point, to crank + ground, where it is a whole turn.
+    # coupler + rocker is between |crank - ground|, where the reachable range is a point, and crank + ground, where
+    # it is a full turn.
     low, high = abs(crank - ground), crank + ground
     part = decades(rng, -14, -0.3)
     reach, share = low + (high - low) * (part if rng.random() < 0.5 else 1 - part), rng.uniform(0.3, 0.7)
@@ -132,7 +133,7 @@ def slider_crank(branch: int) -> Law:
 
 
 def drawn_slider_crank(rng: np.random.Generator) -> tuple[float, ...]:
-    """Crank and rod over decades; the rod often so short that it nearly turns back."""
+    """Random crank and rod lengths; the rod is often only slightly longer than the crank."""
     scale, clock = decades(rng), decades(rng)
     crank = decades(rng, -2, 2)
     rod = crank * (1 + decades(rng, -12, 2))
@@ -144,7 +145,7 @@ def drawn_slider_crank(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def swung(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
-    """Angle, rate and acceleration of a pendulum: swinging or whirling (Whittaker, Analytical Dynamics, 44)."""
+    """Angle, rate and acceleration of a swinging or whirling pendulum (Whittaker, Analytical Dynamics, 44)."""
     sine, half_rate = mp.sin(start / 2), rate / (2 * frequency)
     square = sine**2 + half_rate**2
     if square == 1 or square == 0:
@@ -152,7 +153,7 @@ def swung(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
     modulus, back = mp.sqrt(square), mp.sign(rate) or 1
     if square < 1:
         begin = mp.ellipf(mp.asin(sine / modulus), square)
-        if half_rate < 0:  # on its way back; starts are within half a turn of the bottom
+        if half_rate < 0:  # the pendulum swings back; starts are within half a turn of the bottom
             begin = 2 * mp.ellipk(square) - begin
         u = frequency * t + begin
         sn, cn = mp.ellipfun("sn", u, m=square), mp.ellipfun("cn", u, m=square)
@@ -165,13 +166,13 @@ def swung(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
 
 
 def swing(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
-    """The largest angle, rate and acceleration of the whole motion."""
+    """The largest angle, rate and acceleration of the motion."""
     modulus = mp.hypot(mp.sin(start / 2), rate / (2 * frequency))
     return [2 * min(modulus, mp.pi), 2 * frequency * modulus, frequency**2 * min(2 * modulus, 1)]
 
 
 def drawn_pendulum(rng: np.random.Generator) -> tuple[float, ...]:
-    """Half of the starts near the separatrix, or near the top or the bottom; up to a hundred radians of time."""
+    """Random pendulums, half of them near the separatrix or an equilibrium, at times up to 100 radians of phase."""
     frequency, start = decades(rng), angle(rng, (0.0, math.pi, -math.pi))
     start = math.remainder(start, 2 * math.pi)
     rate = 2 * frequency * float(rng.normal())
@@ -183,7 +184,7 @@ def drawn_pendulum(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def chain(*numbers: Any) -> list[Any]:
-    """Angular accelerations of three bars that hang on one another, by Lagrange's equations."""
+    """Angular accelerations of three bars in a chain, by Lagrange's equations."""
     lengths, masses, angles, rates = (numbers[k : k + 3] for k in (0, 3, 6, 9))
     rows, right = mp.zeros(3), mp.zeros(3, 1)
     for i, j in np.ndindex(3, 3):
@@ -204,7 +205,7 @@ def drawn_chain(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def tow(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
-    """The drawbar's angle and the wheel's place, by the exponential of the 2 by 2 system."""
+    """The drawbar's angle and the wheel's position, by the matrix exponential of the 2 by 2 system."""
     curvature = 1 / radius
     root = mp.sqrt(mp.mpc(1 - (length * curvature) ** 2))
     if root == 0:
@@ -226,19 +227,21 @@ def our_tow(length: float, start: float, radius: float, way: float) -> list[Any]
 
 
 def tow_sizes(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
-    """The angle is a remainder of the start's, and the wheel is a drawbar away from the hitch."""
+    """Magnitudes for the rounding errors: the start angle for psi, and the drawbar's length for the wheel's
+    position.
+    """
     turned, x, y = tow(length, start, radius, way)
     place = max(abs(mp.mpc(x, y)), length)
     return [max(abs(turned), abs(start)), place, place]
 
 
 def drawn_tow(rng: np.random.Generator) -> tuple[float, ...]:
-    """Radii around the length, and far from it; starts next to both equilibria."""
+    """Random radii, near the length and far from it; start angles near both equilibria."""
     length = decades(rng)
     share = 1 + float(rng.choice([-1, 1])) * decades(rng, -12, -0.1) if rng.random() < 0.5 else decades(rng, -2, 4)
     radius = length * share * float(rng.choice([-1, 1]))
     start = math.remainder(angle(rng, (0.0, math.pi)), 2 * math.pi)
-    if abs(share) > 1 and rng.random() < 0.3:  # next to where it settles, or to where it is pushed from
+    if abs(share) > 1 and rng.random() < 0.3:  # near the stable or the unstable equilibrium
         settled = -math.asin(length / radius)
         start = (settled if rng.random() < 0.5 else math.pi - settled) + float(rng.normal()) * decades(rng, -9, 0)
         start = math.remainder(start, 2 * math.pi)
@@ -246,7 +249,7 @@ def drawn_tow(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def sleigh(mass: Any, inertia: Any, offset: Any, speed: Any, turning: Any, t: Any) -> list[Any]:
-    """Speed, turning rate, heading and the blade's force, by Gudermann's function."""
+    """Speed, turning rate, heading and lateral force of a sleigh, by Gudermann's function."""
     arm = mp.sqrt(inertia / mass + offset**2)
     top = mp.hypot(speed, arm * turning)
     begin = mp.asinh(speed / (arm * abs(turning)))
@@ -273,17 +276,21 @@ def drawn_sleigh(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def ellipse(a: Any, b: Any, u: Any) -> list[Any]:
-    """Arc, direction, point and curvature as in `reference.rolling.closed_curves`, by Legendre's integral."""
+    """Arc, tangent angle, point and curvature, in the convention of `reference.rolling.closed_curves`, by Legendre's
+    integral.
+    """
     if max(a / b, b / a) > 999:
         raise Outside
     sine, cosine = mp.sin(u), mp.cos(u)
-    excess = mp.atan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)  # over a circle's: below a quarter turn
+    excess = mp.atan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)  # difference to a circle
     curvature = a * b / mp.hypot(a * sine, b * cosine) ** 3
     return [b * mp.ellipe(u, 1 - (a / b) ** 2), u + mp.pi / 2 + excess, a * cosine, b * sine, curvature]
 
 
 def cam(radius: Any, *numbers: Any) -> list[Any]:
-    """The same of a cam; `numbers`: cosine and sine of the first, of the second, of the third; the normal's angle."""
+    """Arc, tangent angle, point and curvature of a cam; `numbers`: three pairs of cosine and sine coefficients, and
+    the normal's angle.
+    """
     *harmonics, nu = numbers
 
     def series(nu: Any, order: int) -> Any:
@@ -299,7 +306,7 @@ def cam(radius: Any, *numbers: Any) -> list[Any]:
 
 
 def curve_at(curve: Curve, place: float) -> list[Any]:
-    """Arc, direction, point and curvature of a curve of the reference at a parameter."""
+    """Arc, tangent angle, point and curvature of a curve of the reference at a parameter."""
     return [curve.arc_of(place), curve.angle_of(place), *curve.point_of(place), curve.curvature_of(place)]
 
 
@@ -310,14 +317,14 @@ def drawn_ellipse(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def turned(rng: np.random.Generator) -> float:
-    """Up to a few turns, often next to an end of an axis."""
+    """A random angle of up to a few turns, often near the end of an axis."""
     if rng.random() < 0.5:
         return float(rng.uniform(-20, 20))
     return float(rng.integers(-4, 5)) * math.pi / 2 + float(rng.choice([-1, 1])) * decades(rng, -12, 0)
 
 
 def drawn_cam(rng: np.random.Generator) -> tuple[float, ...]:
-    """Convex: radius above the sum of (k^2 - 1) c_k; at times nearly not."""
+    """A random convex cam, whose radius exceeds the sum of (k^2 - 1) c_k; some cams are nearly not convex."""
     radius, spread = decades(rng), (0.1 if rng.random() < 0.7 else 0.35)
     c = [radius * float(rng.uniform(-1, 1)) for _ in range(2)]
     return radius, *c, *(radius * spread * float(rng.uniform(-1, 1)) / share for share in (3, 3, 8, 8))

@@ -1,10 +1,9 @@
-"""A formula of the reference beside the same formula in fifty digits, and how far a double may be from it.
+"""Comparison of a formula of the reference, in double precision, with the same formula in fifty digits.
 
-A double knows each of its arguments to half a rounding. So no formula can be asked for more than what its value moves
-by when the arguments move by a rounding each: |f(..., a (1 + eps), ...) - f(a)|, in fifty digits, added over all
-arguments. That is the condition number of the arguments, and at a singular position, where the derivative is infinite,
-it is still finite. To it comes one rounding of the value itself: of the vector, where the value is one of its
-components.
+Every argument is rounded to double precision. So the allowed error of a value is the sum over the arguments of |f(...,
+a (1 + eps), ...) - f(a)|, computed in fifty digits, plus one rounding of the value. This sum replaces the condition
+number, and it is finite also at a singular position. For the components of a vector, the rounding is that of the
+vector.
 """
 
 from __future__ import annotations
@@ -24,15 +23,16 @@ Draw = Callable[[np.random.Generator], tuple[float, ...]]
 
 
 class Outside(ValueError):
-    """The formula in fifty digits has no value at these numbers."""
+    """The formula in fifty digits has no value for these arguments."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """`ours` in doubles and `exact` in fifty digits take the same arguments and give the same values, in order.
+    """`ours` in double precision and `exact` in fifty digits have the same arguments and return the same values in
+    order.
 
-    `vectors` are slices of values that are the components of one vector; `angles` are values known up to whole turns;
-    `size` gives the size of each value's whole motion, where a value that passes zero is a part of one.
+    vectors: slices of values that are the components of one vector. angles: indices of values that are compared up to
+    whole turns. size: returns the magnitude whose rounding is allowed for each value; by default the value itself.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Miss:
-    """How far one value was off, in parts of what its arguments excuse."""
+    """The error of one value; `ratio` is the error divided by the allowed error of the value."""
 
     ratio: float
     law: str
@@ -64,7 +64,7 @@ class Miss:
 
 
 def differences(law: Law, values: Sequence[Any], others: Sequence[Any]) -> list[float]:
-    """The sizes of the differences of two rows of values; of angles, up to whole turns."""
+    """Absolute differences of two lists of values; those of angles are computed up to whole turns."""
     gaps = [one - other for one, other in zip(values, others, strict=True)]
     for k in law.angles:
         gaps[k] -= 2 * mp.pi * mp.nint(gaps[k] / (2 * mp.pi))
@@ -72,7 +72,9 @@ def differences(law: Law, values: Sequence[Any], others: Sequence[Any]) -> list[
 
 
 def moved_by_roundings(law: Law, numbers: list[Any], exact: list[Any]) -> list[float] | None:
-    """How far the values move when each argument moves by a rounding, added up; None where there is no value near."""
+    """For each value, the sum of its changes if each argument changes by a rounding; None if the formula has no
+    value nearby.
+    """
     out = [0.0] * len(exact)
     for index, number in enumerate(numbers):
         moves = []
@@ -89,7 +91,9 @@ def moved_by_roundings(law: Law, numbers: list[Any], exact: list[Any]) -> list[f
 
 
 def misses(law: Law, arguments: tuple[float, ...]) -> list[Miss] | None:
-    """One for each value; None where the law or the reference has none at these arguments."""
+    """One Miss for each value; None if the formula in double precision or in fifty digits has no value at these
+    arguments.
+    """
     with mp.workdps(DIGITS):
         numbers = [mp.mpf(argument) for argument in arguments]
         try:
@@ -115,7 +119,9 @@ def misses(law: Law, arguments: tuple[float, ...]) -> list[Miss] | None:
 
 
 def searched(law: Law, cases: int, seed: int) -> Iterator[Miss]:
-    """The worst value of each of `cases` drawn arguments that have values."""
+    """For each of `cases` random arguments, the value with the largest ratio; arguments without a value are drawn
+    again.
+    """
     rng, left, tried = np.random.default_rng(seed), cases, 0
     while left:
         tried += 1
@@ -133,12 +139,12 @@ def decades(rng: np.random.Generator, low: float = -9, high: float = 9) -> float
 
 
 def near(rng: np.random.Generator, place: float, width: float = 1.0) -> float:
-    """A number at a distance of 1e-15 to 1 widths from a place, on either side."""
+    """A random number at a distance of 1e-15 to 1 widths from `place`, on either side."""
     return place + width * float(rng.choice([-1, 1])) * decades(rng, -15, 0)
 
 
 def angle(rng: np.random.Generator, singular: Sequence[float] = (0.0, math.pi / 2, math.pi, -math.pi / 2)) -> float:
-    """Any angle within a turn [rad], half of the times near one of the singular ones."""
+    """A random angle within a turn [rad]; half of the angles are near a singular angle."""
     if rng.random() < 0.5:
         return float(rng.uniform(-math.pi, math.pi))
     return near(rng, float(rng.choice(singular)))

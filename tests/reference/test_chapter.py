@@ -29,12 +29,12 @@ from reference.trajectory import Trajectory
 from tests.present import present
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
-# The coupler's rate vanishes at theta = 2.8006 and 5.9406 rad; these arcs of the crank stay away from there.
+# The coupler's rotation rate vanishes at theta = 2.8006 and 5.9406 rad. These intervals do not contain these angles.
 ARCS = {"coupler backward": (0.6, 2.4), "coupler forward": (3.5, 5.5)}
 
 
 def coupler(low, high, count, rate=10.0):
-    """Times, poses and twists of the coupler, its frame at B, for a constant rate of the crank [rad/s]."""
+    """Times, poses and twists of the coupler at a constant crank rate [rad/s]; the origin of its frame is B."""
     theta = np.linspace(low, high, count)
     beta, _ = LINKAGE.angles(theta)
     beta_rate, _ = LINKAGE.rates(theta, rate)
@@ -44,7 +44,9 @@ def coupler(low, high, count, rate=10.0):
 
 
 def cardan(count=200, length=1.0):
-    """A ladder sliding down a wall, its frame in its middle: circles of radius `length` and half of it."""
+    """Times and poses of a ladder that slides down a wall; its centrodes are circles of radii `length` and length /
+    2.
+    """
     t = np.linspace(0.2, 1.3, count)
     return t, np.column_stack([length / 2 * np.cos(t), length / 2 * np.sin(t), -t])
 
@@ -55,7 +57,7 @@ def test_the_velocity_at_the_instant_centre_is_zero():
     space, body = instant_centre(pose, twist)
     arm = space - pose[:, :2]
     velocity = twist[:, :2] + twist[:, 2:] * np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-    # The chapter's r_C = 0 (erratum 2) would put it in the origin.
+    # The chapter's r_C = 0 (erratum 2) would place the instant centre at the origin.
     np.testing.assert_allclose(velocity, 0, atol=1e-14 * np.abs(arm).max())
     assert np.abs(space).max() > 0.1
     turned = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
@@ -69,8 +71,8 @@ def test_the_centrodes_of_a_sliding_ladder_are_cardans_circles():
     motion = from_poses(*cardan())
     np.testing.assert_allclose(np.linalg.norm(motion.space, axis=-1), 1.0, atol=1e-11)
     np.testing.assert_allclose(np.linalg.norm(motion.body, axis=-1), 0.5, atol=1e-11)
-    inner = slice(5, -5)  # at the very ends a spline's derivatives are those of extrapolation
-    # Two derivatives of points that come from a derivative: rounding over the spacing cubed, 0.0055 rad.
+    inner = slice(5, -5)  # the end derivatives of a spline are extrapolated
+    # The curvature needs three derivatives of the poses, so its rounding error is eps / (0.0055 rad)^3.
     np.testing.assert_allclose(motion.space_curvature[inner], -1.0, atol=1e-7)
     np.testing.assert_allclose(motion.body_curvature[inner], 2.0, atol=1e-7)
 
@@ -81,8 +83,8 @@ def test_rolling_the_centrodes_of_a_coupler_reproduces_its_motion(arc):
     between = coupler(ARCS[arc][0] + 1e-3, ARCS[arc][1] - 1e-3, 777)[1]
     for motion in (centrodes(t, pose, twist), from_poses(t, pose)):
         found = motion.rolling().pose(between[:, 2])
-        # Asked: 1e-8. Splines of degree 7 at 400 points over 2 rad leave their eighth power, 1e-10 in the curves; a
-        # point carried back is wrong by less, for the errors of the two curves are the same.
+        # A spline of degree 7 through 400 points over 2 rad has an error of 1e-10 in the curves. The errors of
+        # the two curves nearly cancel in the pose.
         np.testing.assert_allclose(found, between, rtol=0, atol=1e-11)
         assert 0 < motion.error < 1e-8
 
@@ -93,7 +95,7 @@ def test_the_centrode_error_is_the_velocity_error_over_the_rotation_rate():
     for every in (1, 2, 4):
         run = Lagrange("rk4", "none").build(scene.mechanism(), 0.02 / every)(50, every)
         errors.append(centrode_error(scene.motion(run.t), run).max())
-    # Runge-Kutta's fourth order, seen in the velocities alone.
+    # The errors of the velocities have the order 4 of the Runge-Kutta method.
     np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 4, atol=0.5)
     truth = scene.motion([0.0, 0.1])
     shifted = Trajectory(truth.t, truth.pose, truth.twist + np.array([1e-3, 0, 0]), truth.reaction)
@@ -105,7 +107,7 @@ def test_the_centrode_error_is_the_velocity_error_over_the_rotation_rate():
 def test_shapes_have_equal_arc_lengths_and_touch_at_equal_indices():
     shapes = shapes_of(from_poses(*coupler(*ARCS["coupler forward"], 401)[:2]), points=300)
     lengths = [np.linalg.norm(np.diff(points, axis=0), axis=-1) for points in (shapes.space, shapes.body)]
-    # Chords of 3 mm are shorter than their arcs by the cube of that over the radius squared.
+    # A chord of 3 mm is shorter than its arc by about its cube over the squared radius of curvature.
     np.testing.assert_allclose(lengths[0], lengths[1], atol=1e-6)
     for index in (0, 150, 299):
         np.testing.assert_allclose(placed_body(shapes, index)[index], shapes.space[index], atol=1e-13)
@@ -122,13 +124,14 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
         name: np.array([[float(v) for v in pair.split(",")] for pair in text[1:].split(" L")])
         for name, text in paths.items()
     }
-    # Both to one scale: a chord of the one is as long as that of the other, to the four decimals written.
+    # Both curves have the same scale, so corresponding chords have equal lengths up to the rounding to four
+    # decimals.
     np.testing.assert_allclose(
         *(np.linalg.norm(np.diff(drawn[name], axis=0), axis=-1) for name in ("space", "body")), atol=3e-3
     )
     ezdxf = pytest.importorskip("ezdxf")
     document = ezdxf.read(io.StringIO(as_dxf(shapes)))
-    assert document.units == 6  # metres, in the format's own list
+    assert document.units == 6  # the DXF code for metres
     lines = {line.dxf.layer: np.array([point[:2] for point in line.get_points()]) for line in document.modelspace()}
     np.testing.assert_allclose(lines["SPACE"], shapes.space, atol=1e-12)
     np.testing.assert_allclose(lines["BODY"], shapes.body, atol=1e-12)
@@ -142,10 +145,10 @@ def test_a_table_of_poses_may_have_its_columns_in_any_order():
 
 def test_the_error_bound_of_centrodes_from_poses_is_above_their_true_error():
     t = np.linspace(0, 1.2, 60)
-    run, pace = t + 0.05 * np.sin(12 * t), 1 + 0.6 * np.cos(12 * t)  # the same curves, run through unsteadily
+    run, pace = t + 0.05 * np.sin(12 * t), 1 + 0.6 * np.cos(12 * t)  # the same curves, traversed at a varying rate
     pose = np.column_stack([0.3 * np.cos(2 * run), 0.1 * np.sin(3 * run), 3 * run + 0.02 * np.sin(5 * run)])
     twist = np.column_stack([-0.6 * np.sin(2 * run), 0.3 * np.cos(3 * run), 3 + 0.1 * np.cos(5 * run)]) * pace[:, None]
     found, exact = from_poses(t, pose), centrodes(t, pose, twist)
     wrong = np.linalg.norm(found.space - exact.space, axis=-1).max()
-    # What the table leaves out between its poses is less than what its slopes are wrong by.
+    # The interpolation error of the exact centrodes is smaller than the error by numerical differentiation.
     assert exact.error < wrong < found.error

@@ -1,5 +1,4 @@
-"""The reference searched for lost digits: random numbers over eighteen decades, near singular positions, against fifty
-digits."""
+"""Formulas of the reference at random arguments over eighteen decades, compared with fifty digits."""
 
 from __future__ import annotations
 
@@ -12,8 +11,8 @@ from tests.reference.formulas import LAWS
 from tests.reference.law import Law, misses, searched
 
 NAMED = {law.name: law for law in LAWS}
-# A formula of twenty operations makes that many roundings of its own, some of them along with the worst argument.
-# Beside it a lost digit is a factor of ten, and most of what was found had lost four.
+# Allowed error in units of the rounding of the arguments. A formula of twenty operations causes up to twenty roundings.
+# A lost decimal digit is a factor of ten, and most of the errors that were found had lost four digits.
 ROUNDINGS = 20
 
 
@@ -24,21 +23,22 @@ def test_formulas_have_errors_of_a_few_roundings_of_their_arguments(law: Law, ca
     assert miss.ratio < ROUNDINGS, str(miss)
 
 
-# What the search has found, each lost digits before it was mended.
+# Arguments at which an earlier version of a formula lost digits.
 FOUND = {
-    # The square of the crank swamped the ground 1500 times shorter, in the accelerations.
+    # The ground is 1500 times shorter than the crank: a sum with the crank's square lost the ground's digits.
     "four-bar, branch +1": (
         *(9025.355793020284, 24461.827924377452, 18821.77529205487, -0.9988767354831353, -5.781930411818574),
         *(-1.8032103807498472, -48.80631439014284, 0.2038044762375766),
     ),
-    # The constants of the arc's series were taken off at the end, where nothing was left of a short arc.
+    # The constants of the arc's series were subtracted last, so that a short arc had few digits left.
     "cam at a parameter": (
         *(11902.645692682283, -10724.66978055462, 4319.19523390655, -166.8134543432839, -232.1255391750947),
         *(216.8935151019048, -199.632266555443, -4.975638815152181e-08),
     ),
-    # The direction was that of a circle and an excess, of which little was left on the flat side.
+    # The tangent angle was a sum of a circle's angle and an excess, which cancelled on the flat side.
     "ellipse at a parameter": (0.2970230243104033, 0.0011085289153370565, -1.5707907017221043),
-    # A logarithm of nearly one, for a short way; two turns that nearly cancel, on a circle shorter than the drawbar.
+    # The logarithm of a number near 1 for a short path, and the cancellation of two angles on a circle shorter than
+    # the drawbar.
     "towed wheel": (1185375.3119599016, 0.5602953463275804, 1259916407.01395, 4.095497157341971e-05),
     "towed wheel, going round": (
         *(6.205517261697245, -0.15671260809038934, -0.08751075069403959, -12.758961976426988),
@@ -55,7 +55,7 @@ def test_arguments_that_once_lost_digits_have_errors_of_a_few_roundings(law: str
 
 def test_the_search_notices_a_relative_error_of_1e_minus_13() -> None:
     for law in LAWS:
-        if "limit" in law.name:  # always next to a dead centre, where a rounding of its arguments moves it by more
+        if "limit" in law.name:  # always near a dead centre, which amplifies roundings of the arguments
             continue
         wrong = replace(law, ours=lambda *numbers, law=law: np.asarray(law.ours(*numbers), dtype=float) * (1 + 1e-13))
         assert max(searched(wrong, 6, 1), key=lambda one: one.ratio).ratio > ROUNDINGS, law.name

@@ -53,7 +53,8 @@ def random_linkages(count):
 def test_angles_of_random_linkages_are_continuous_at_every_crank_angle():
     for linkage in random_linkages(15):
         for low, high in linkage.crank_limits() or ((-15.0, 15.0),):
-            # Spaced so that the square-root ends are resolved; the largest jump must then be what the rates say.
+            # Chebyshev spacing resolves the square-root behaviour at the ends. The largest difference must
+            # agree with the rates.
             theta = (low + high) / 2 - (high - low) / 2 * np.cos(np.linspace(2e-3, np.pi - 2e-3, 2000))
             for branch in (1, -1):
                 values = np.array(linkage.angles(theta, branch))
@@ -68,11 +69,11 @@ def test_the_bars_of_a_double_crank_turn_fully_with_the_crank(linkage, branch):
     assert linkage.grashof() == "double-crank"
     theta = np.linspace(-10, 10, 41)
     turned = np.array(linkage.angles(theta + 6 * np.pi, branch)) - linkage.angles(theta, branch)
-    assert np.max(np.abs(turned - 6 * np.pi)) < 1e-13  # three turns, to the rounding of theta
+    assert np.max(np.abs(turned - 6 * np.pi)) < 1e-13  # three turns, with the rounding error of theta
     shuffled = np.random.default_rng(0).permutation(theta.size)
     assert np.array_equal(linkage.angles(theta[shuffled], branch)[0], linkage.angles(theta, branch)[0][shuffled])
     rocking = np.array(CHAPTER.angles(theta + 20 * np.pi)) - CHAPTER.angles(theta)
-    assert np.max(np.abs(rocking)) < 1e-13  # a crank-rocker does not wind
+    assert np.max(np.abs(rocking)) < 1e-13  # the coupler and rocker of a crank-rocker do not turn fully
 
 
 def test_huge_crank_angles_and_multiples_of_pi_are_accurate_to_rounding():
@@ -84,16 +85,13 @@ def test_huge_crank_angles_and_multiples_of_pi_are_accurate_to_rounding():
     assert np.max(np.abs(wrapped(np.array([beta, phi]) - truth))) < 1e-14
 
 
-# Which linkages and crank angles there are
-
-
 @pytest.mark.parametrize(
     ("method", "steps", "order"), [("euler", (200, 400), 1), ("rk4", (8, 16), 4), ("RK45", (1e-3,), 2.4e-2)]
 )
 def test_integrated_rates_have_the_convergence_order_of_their_method(method, steps, order):
     times = np.linspace(0, np.pi / 5, 21)
     beta, _ = CHAPTER.angles(math.pi / 2 + 10 * times)
-    if method == "RK45":  # at the common tolerance two hundredths of a radian in one revolution
+    if method == "RK45":  # with scipy's default tolerance the error after one revolution is 0.024 rad
         run = CHAPTER.integrate_rates(np.linspace(0, np.pi / 5, 401))
         assert np.max(np.abs(run.beta - CHAPTER.angles(run.theta)[0])) == pytest.approx(order, rel=0.05)
         assert run.stopped == ""
@@ -135,7 +133,7 @@ def test_coupler_and_rocker_are_in_line_at_crank_limits_and_angles_beyond_are_re
         ((2.0, 2.2, 1.9), (3.0, 0.0), "triple-rocker"),
         ((0.1, 0.3, 0.1), (0.3, 0.0), "change-point"),
         ((0.1, 0.7, 0.2), (0.8, 0.0), "change-point"),  # 0.1 + 0.8 and 0.7 + 0.2 differ by rounding
-        # A hundredth of a nanometre a metre is none: s + l - p - q for s = 1, l = 3, p = 1.5, q = 2.5 m.
+        # A difference of 1e-11 m is no change-point: s + l - p - q for s = 1, l = 3, p = 1.5, q = 2.5 m.
         ((1.0, 1.5, 2.5 - 1e-11), (3.0, 0.0), "triple-rocker"),
         ((1.0, 1.5, 2.5 + 1e-11), (3.0, 0.0), "crank-rocker"),
     ],
@@ -149,15 +147,12 @@ def test_a_parallelogram_is_accurate_next_to_its_change_point():
     parallelogram = FourBar(0.1, 0.3, 0.1, (0.3, 0.0))
     assert parallelogram.crank_limits() is None
     for theta in (1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9, 1e-100, -1e-100):
-        # One of the two branches is the parallelogram, whose coupler stays parallel to the ground.
+        # On one of the two branches the coupler is parallel to the ground.
         pairs = np.array([wrapped(parallelogram.angles(theta, branch)) for branch in (1, -1)])
         beta, phi = pairs[np.argmin(np.abs(pairs[:, 0]))]
-        # The formulas lose nothing here, where a difference of squared lengths would leave eps / theta.
+        # A formula with a difference of squared lengths would have an error of eps / theta.
         assert abs(beta) < 4e-15
         assert abs(phi - theta) < 4e-15
-
-
-# Scenes
 
 
 def test_a_free_triple_rocker_changes_its_branch_at_crank_limits_without_a_jolt():
@@ -175,12 +170,12 @@ def test_a_free_triple_rocker_changes_its_branch_at_crank_limits_without_a_jolt(
     assert set(branch) == {1, -1}
     for change in np.flatnonzero(np.diff(branch)):
         near = min(abs(theta[change] - low), abs(theta[change] - high))
-        assert near < 0.05  # less than the crank turns between samples
-        # No jolt: the speed changes by what the accelerations either side tell.
+        assert near < 0.05  # less than the crank's rotation between two samples
+        # The change of the speed agrees with the mean of the accelerations at both samples.
         pair = slice(change, change + 2)
         told = np.mean(bend[pair], axis=0) * np.diff(motion.t[pair])
         assert np.max(np.abs(np.diff(motion.twist[pair], axis=0)[0] - told)) < 0.1
-    # Before and after, the angles are those of the closed form on the branch reported.
+    # At all samples the angles agree with the closed form on the branch that `branch_of` returns.
     beta, phi = each.four_bar.angles(np.clip(theta, low, high), branch)
     turns = np.array([beta, phi]) - motion.pose[:, 1:, 2].T
     assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # square root of rounding at a limit
@@ -219,7 +214,7 @@ def test_the_slider_has_no_speed_at_dead_centres_and_the_stroke_is_their_distanc
     assert np.abs(shape.rates(np.array(shape.dead_centres()))[1]).max() < 1e-13
     assert abs(abs(stretched - folded) - shape.stroke()) < 1e-14
     fine = shape.position(np.linspace(0, 2 * math.pi, 200_001))
-    assert abs(np.ptp(fine) - shape.stroke()) < 1e-8  # a grid misses an extremum by the square of its spacing
+    assert abs(np.ptp(fine) - shape.stroke()) < 1e-8  # the error on a grid is of second order in its spacing
     assert abs(abs(stretched) - math.sqrt((shape.rod + shape.crank) ** 2 - shape.offset**2)) < 1e-14
 
 
@@ -233,13 +228,14 @@ MULTIPLIERS = (98.5668703962410896057654982170, -6.12268834425566265503114393122
 
 
 def of_the_test_set(angles: np.ndarray) -> np.ndarray:
-    """Of the bodies' angles (..., 7)."""
+    """The test set's seven angles, computed from the bodies' angles (..., 7)."""
     k1, k2, k3, k4, k5, k6, k7 = np.moveaxis(angles, -1, 0)
     return np.stack([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7], axis=-1)
 
 
 def test_the_final_angles_of_andrews_mechanism_agree_with_the_test_set():
-    # Their digits are good to about 1.4e-9: by two formulations of ours, which agree to 1e-12, the same difference.
+    # The digits of the test set have an error of about 1.4e-9: two formulations here, which agree to 1e-12, show
+    # this difference.
     ends = SCENE.motion(0.03).pose[0, :, 2]
     by_multipliers = TRUTH.build(SCENE.mechanism(), 0.03)(1, 1).pose[1, :, 2]
     np.testing.assert_allclose(of_the_test_set(ends), END, atol=1e-8)
@@ -259,8 +255,8 @@ def test_the_initial_accelerations_of_andrews_mechanism_agree_with_the_test_set(
 
 @pytest.mark.parametrize("told", ["truth", "lagrange"])
 def test_the_initial_multipliers_of_andrews_mechanism_agree_with_the_test_set(told):
-    # Its rows are the rod's end less that of body 3, 4 and 6, and M q'' = f - G^T lambda. Ours are the second point
-    # less the first, M a = f + J^T reaction, and the rod, K2, is the second: a multiplier is minus the reaction.
+    # The test set's constraint is the rod's end minus the end of body 3, 4 or 6, with M q'' = f - G^T lambda. Here
+    # the rod K2 is the second body, and M a = f + J^T reaction, so a multiplier is minus the reaction.
     mechanism = SCENE.mechanism()
     motion = SCENE.motion(0.0) if told == "truth" else TRUTH.build(mechanism, 1e-4)(1, 1)
     names = [f"{pin} {direction}" for pin in ("P3", "P4", "P6") for direction in "xy"]

@@ -1,4 +1,4 @@
-"""The description of a mechanism: rows, gaps, biases, reactions, force elements, scales, and its memory."""
+"""Tests of mechanisms: rows, gaps, biases, reactions, force elements, scales and memory."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ JOINTED = {
 @pytest.mark.parametrize("name", JOINTED)
 def test_rows_are_derivatives_of_the_gap_and_the_bias_is_minus_the_rate_of_the_rows(name):
     mechanism, h = JOINTED[name], 1e-5
-    poses, twists = RANDOM.normal(size=(2, 20, len(mechanism.bodies), 3))  # at random, so the joints are open
-    rows, step = mechanism.rows(poses), 1e-30  # a complex step has no subtraction: the comparison is at rounding level
+    poses, twists = RANDOM.normal(size=(2, 20, len(mechanism.bodies), 3))  # random poses do not satisfy the joints
+    rows, step = mechanism.rows(poses), 1e-30  # a complex step has no cancellation, so the errors are roundings
     for column in range(rows.shape[-1] if name != "skate" else 0):
         moved = poses.astype(complex).reshape(20, -1)
         moved[:, column] += 1j * step
         derivative = np.imag(mechanism.gap(moved.reshape(poses.shape), 0.0)) / step
         np.testing.assert_allclose(rows[..., column], derivative, rtol=1e-12, atol=1e-13)
-    # Central differences of J v along q + t v: an error of about 1e-10 by a formula that shares nothing.
+    # Central differences of J v along q + t v have an error of about 1e-10 and use no code of the bias.
     states = (poses + h * twists, poses - h * twists)
     ahead, behind = (np.einsum("trc,tc->tr", mechanism.rows(at), twists.reshape(20, -1)) for at in states)
     bias = mechanism.bias(poses, twists)
@@ -79,14 +79,14 @@ def test_reactions_computed_from_accelerations_satisfy_newtons_law():
     reaction = RANDOM.normal(size=driven.row_count)
     weight = 1 / driven.inertias.reshape(-1)
     acceleration = (driven.free_fall.reshape(-1) + weight * (rows.T @ reaction)).reshape(-1, 3)
-    # Rounding of 1e-16 times the condition of the row system, about 1e3 here.
+    # The bound is a rounding (1e-16) times the condition number of the rows (about 1e3).
     np.testing.assert_allclose(driven.reaction(driven.pose, acceleration), reaction, atol=1e-12)
 
 
 def test_reactions_are_computed_with_the_masses_and_gravity_of_the_engines_model():
     mechanism = pendulum()
     resting = np.zeros((1, 3))
-    held = np.array([[3.0, 3.0, np.nan]])  # it has no number for the inertia: the mechanism's counts
+    held = np.array([[3.0, 3.0, np.nan]])  # NaN: the mechanism's inertia is used
     found = mechanism.reaction(mechanism.pose, resting, held, np.array([0.0, -2.0]))
     own = mechanism.reaction(mechanism.pose, resting)
     heavy = replace(mechanism, bodies=(replace(mechanism.bodies[0], mass=3.0),), gravity=(0.0, -2.0))
@@ -97,7 +97,7 @@ def test_reactions_are_computed_with_the_masses_and_gravity_of_the_engines_model
 def test_energy_gap_and_slip_are_computed_without_a_reference_motion():
     mechanism = pendulum(angle=0.0, rate=2.0)
     start = Trajectory(np.zeros(1), mechanism.pose[None], mechanism.twist[None], np.zeros((1, 2)))
-    # A bar of 1 kg and 1 m turning about its end at 2 rad/s: (1/3) 2^2 / 2.
+    # Kinetic energy I omega^2 / 2 of a bar of 1 kg and 1 m about its end, with I = 1/3 kg m^2 and omega = 2 rad/s.
     np.testing.assert_allclose(energy(mechanism, start), [2 / 3], rtol=1e-15)
     assert np.max(np.abs(joint_gap(mechanism, start))) == 0
     assert np.max(np.abs(slip(mechanism, start))) < 1e-15
@@ -140,7 +140,7 @@ POSES, TWISTS = RANDOM.normal(size=(2, 20, 4, 3))
 
 
 def slopes(function: Any, at: np.ndarray) -> np.ndarray:
-    """The derivatives (20, 12) of an analytic function by the coordinates (20, 4, 3), by complex steps."""
+    """Derivatives (20, 12) of an analytic function by the coordinates (20, 4, 3), computed by complex steps."""
     steps = 1e-100j * np.eye(12).reshape(12, 4, 3)
     return np.stack([np.imag(function(at + step)) / 1e-100 for step in steps], axis=-1)
 
@@ -191,7 +191,7 @@ RNG = np.random.default_rng(7)
 
 
 def in_fifty_digits(rows, inertias, excess):
-    """J M^-1 J^T f = J excess, without rounding; the rows must be independent."""
+    """The solution f of J M^-1 J^T f = J excess in fifty digits; the rows must be independent."""
     with mpmath.workdps(50):
         jacobian = mpmath.matrix(rows.tolist())
         weighted = mpmath.matrix(
@@ -209,7 +209,8 @@ def test_reactions_agree_with_fifty_digits_for_large_mass_ratios(ratio):
     excess = (rows.T @ forces) / inertias
     found = reactions(rows, inertias, excess, np.ones(8), 1.0)
     exact = in_fifty_digits(rows, inertias, excess)
-    # The square root of the ratio is what least squares lose; the product J M^-1 J^T would lose the ratio itself.
+    # Least squares amplify rounding by the square root of the mass ratio. A solution with J M^-1 J^T amplifies it
+    # by the ratio.
     assert np.abs(found - exact).max() < 1e-13 * max(ratio, 1 / ratio) ** 0.5 * np.abs(exact).max()
 
 
@@ -231,13 +232,17 @@ def test_degrees_of_freedom_do_not_depend_on_the_unit_of_length(scale):
         Slot("guide", None, "slider", (scale, 0.0), 0.3, (0.0, 0.0)),
     )
     freedoms = [Mechanism((arm, body), joints[:count]).degrees_of_freedom() for count in (2, 3, 4)]
-    assert freedoms == [(2, 2), (1, 1), (1, 1)]  # the arm stands along x: a slot at 0.3 rad holds it, as the motor does
+    assert freedoms == [
+        (2, 2),
+        (1, 1),
+        (1, 1),
+    ]  # the arm lies along x, so the slot holds it as the motor does
 
 
 def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth():
     rows = np.zeros((4, 6))
-    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # the last stands alone
-    rows[1, :2] = 1.0, 1e-3  # the first and a thousandth of the third
+    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # independent of the other rows
+    rows[1, :2] = 1.0, 1e-3  # the first row plus a thousandth of the third
     several = undetermined(np.stack([rows, np.eye(6)[:4]]), 1.0)
     assert several.tolist() == [[True, True, True, False], [False] * 4]
     assert rank(rows, 1.0) == 3
@@ -252,7 +257,7 @@ def test_a_symmetric_system_is_solved_in_any_unit_and_a_singular_one_by_minimum_
 
 
 def pushed(mechanism: Mechanism) -> tuple[Any, Any, Any]:
-    """Poses near the start, forces (3, rows) at random, and the accelerations that these make there."""
+    """Poses near the start, random forces (3, rows), and the accelerations that these forces cause."""
     random = np.random.default_rng(0)
     pose = mechanism.pose + 0.1 * random.normal(size=(3, *mechanism.pose.shape))
     forces = random.normal(size=(3, mechanism.row_count))
@@ -264,14 +269,14 @@ def test_the_band_solver_recovers_the_reactions_from_the_accelerations(scene: An
     mechanism = scene.mechanism()
     pose, forces, excess = pushed(mechanism)
     found = banded_reaction(mechanism.joint_rows, pose, excess, mechanism.inertias)
-    # The condition of a hundred links' system is about 1e4: that many roundings.
+    # The condition number of the system of a hundred links is about 1e4.
     assert np.abs(found - forces).max() < 1e-11
-    # Free fall, added and taken away again, leaves a rounding of the accelerations.
+    # Adding and subtracting the acceleration of free fall causes a rounding error.
     assert np.abs(mechanism.reaction(pose, mechanism.free_fall + excess) - found).max() < 1e-11
 
 
 def with_a_pin_beside_the_last(distance: float) -> Mechanism:
-    """Ten links, the last on two pins this far apart [m]: their rows differ by as much where the angles do."""
+    """Ten links with a second pin at this distance [m] from the last pin."""
     mechanism = TenLinks().mechanism()
     last = mechanism.joints[-1]
     assert isinstance(last, Pin)
@@ -286,17 +291,17 @@ def test_nearly_coincident_pins_are_solved_by_the_dense_system_and_share_the_for
         pose, forces, excess = pushed(twice)
         assert np.isnan(banded_reaction(twice.joint_rows, pose, excess, twice.inertias)).any(axis=1).all()
         found = twice.reactions_of(pose, excess, twice.inertias)
-        if distance == 1e-6:  # the rows' own condition is 6e7: that many roundings are 1e-8
+        if distance == 1e-6:  # the condition number of the rows is 6e7, so rounding causes an error of about 1e-8
             assert np.abs(found - forces).max() < 1e-6
-        else:  # closer than the rank can tell: as one pin, with the smallest forces
+        else:  # below the threshold of the rank: the pins count as one, and the minimum-norm forces are returned
             once = TenLinks().mechanism().reactions_of(pose, excess, twice.inertias)
             assert np.abs(found[:, -4:-2] + found[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()
             assert np.abs(found).max() < 2 * np.abs(once).max()
 
 
 LINKS = 2_000
-# Measured: 1.4 to 1.9 kB a link, in Python objects and in arrays of all of them. One dense matrix of the rows alone
-# would be 48 N bytes a link: 96 kB with 2000 links.
+# Measured: 1.4 to 1.9 kB per link, in Python objects and arrays. A dense matrix of the rows takes 48 N bytes per link,
+# that is 96 kB for 2000 links.
 BYTES_A_LINK = 4_000
 
 
@@ -333,7 +338,10 @@ def test_every_engine_refuses_a_trajectory_above_the_memory_limit(engine):
 
 
 BODY = Body("b", 2.0, 0.5, (0.0, 0.0, 0.0))
-AT = (0.3, 0.4)  # half a metre from the centre: a force there feels 1/2 + 0.25/0.5 = 1 per kilogram
+AT = (
+    0.3,
+    0.4,
+)  # [m]: the inverse of the effective mass is 1/2 + 0.25/0.5 = 1 per kilogram
 
 
 @pytest.mark.parametrize(
@@ -355,7 +363,7 @@ def test_the_time_scale_of_one_force_is_the_inverse_of_its_fastest_rate(force, r
 
 @pytest.mark.parametrize(("twist", "rate"), [((0.0, 0.0, 0.0), 4.0), ((0.0, 0.0, -5.0), 5.0), ((-4.5, 6.0, 0.0), 10.0)])
 def test_the_time_scale_uses_both_bodies_of_a_spring_or_a_faster_start_velocity(twist, rate):
-    spring = Spring("f", "c", "b", (0.0, 0.0), AT, 8.0, 1.0)  # 1 + 1 per kilogram
+    spring = Spring("f", "c", "b", (0.0, 0.0), AT, 8.0, 1.0)  # the inverse effective mass is 1/kg for each body
     pair = [BODY, Body("c", 1.0, 0.5, (3.0, 0.0, 0.0), twist)]
     assert time_scale(0.75, (0.0, 0.0), pair, [], [spring]) == pytest.approx(1 / rate, rel=1e-14)
 

@@ -1,4 +1,4 @@
-"""Windows of collocation: against closed forms, with other stages, and against the explicit method of order 8."""
+"""Gauss collocation compared with closed forms, with more stages and with the explicit method of order 8."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ FAST = np.longdouble(700)
 
 
 def oscillations(t: np.ndarray) -> np.ndarray:
-    """Two angles and their rates (times, 4): both swing slowly, and one of them fast as well."""
+    """Two angles and their rates (times, 4): both angles contain a slow oscillation, the second one also a fast
+    oscillation.
+    """
     t = t.astype(np.longdouble)
     slow, fast = np.cos(t), np.sin(FAST * t) / FAST
     return np.stack([slow, slow + fast, -np.sin(t), -np.sin(t) + np.cos(FAST * t)], axis=-1)
 
 
 def pull(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Their accelerations."""
+    """Angular accelerations of `oscillations`."""
     slow = angle[..., 0]
     return np.stack([-slow, -slow - FAST**2 * (angle[..., 1] - slow)], axis=-1)
 
@@ -29,10 +31,10 @@ def pull(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
 def test_collocation_of_a_fast_and_a_slow_oscillation_is_accurate_at_all_times():
     t = np.sort(np.random.default_rng(1).uniform(0, 2, 300))
     found = gauss.integrate(pull, [1.0, 1.0], [0.0, 1.0], 2.0, 1.0)
-    # A rounding of a time of 2 s moves the fast oscillation by 2e-16 s times 1 rad/s.
+    # A rounding of the time (2e-16 s) times the rate of the fast oscillation (1 rad/s).
     assert np.abs(found(t) - oscillations(t))[:, :2].max() < 1e-15
     assert np.abs(found(t) - oscillations(t))[:, 2:].max() < 1e-15 * 700
-    # Windows of about a third of a period: an explicit method takes twenty steps for that.
+    # A window is about a third of a period; the explicit method needs twenty steps for a third of a period.
     assert len(found.times) < 2 * 700
 
 
@@ -45,8 +47,8 @@ def test_motions_with_rates_in_doubles_are_accurate_by_collocation_and_by_the_ex
     monkeypatch.setattr(gauss, "FEW_WINDOWS", few)
     t = np.linspace(0, 30, 50)
     found = gauss.motion(circle, [0.0, 1.0], 30.0, np.ones(2))(t)
-    # The explicit method lets 3e-14 pass in each of some fifty steps; windows leave rounding, and that of every window
-    # where numpy.longdouble is the ordinary double.
+    # The explicit method has an error of 3e-14 per step in about fifty steps. Collocation has rounding errors, in
+    # every window if numpy.longdouble is a double.
     allowed = 2e-12 if few == 2 else 5e-14
     assert np.abs(found - np.stack([np.sin(t), np.cos(t)], axis=-1)).max() < allowed
 
@@ -55,13 +57,13 @@ def test_the_error_bound_of_a_motion_with_few_windows_is_above_its_true_error():
     t = np.linspace(1, 30, 30)
     rates = lambda state: np.stack([state[..., 1], -np.sin(state[..., 0])], axis=-1)  # noqa: E731
     found = gauss.motion(rates, [3.0, 0.5], 30.0, np.ones(2))(t)
-    # A turning pendulum: twice as many stages, and a tenth of the tolerance.
+    # A whirling pendulum, integrated with 32 stages and a smaller tolerance.
     exact = gauss.integrate(
         lambda angle, rate: -np.sin(angle), [3.0], [0.5], 30.0, 1.0, 32, 3e-18 if EXTENDED else 3e-15
     )
     stated = gauss.error_of(rates, [3.0, 0.5], t, np.ones(2))
     assert np.all(stated > np.abs(found - exact(t)).max(axis=-1))
-    # More than rounding ten times over: the coarser rule is another one.
+    # The bound is above ten roundings, so the coarser rule has a different error.
     assert stated.max() > 1.5 * gauss.COARSER * np.finfo(float).eps * np.abs(found).max()
     assert stated.max() < 1e-10
 

@@ -35,7 +35,7 @@ def test_jacobi_functions_are_accurate_up_to_the_separatrix(complement: float) -
             sn, cn, dn, amplitude = (float(value) for value in jacobi(argument, complement))
             exact_sn, exact_cn, exact_dn = (
                 mpmath.ellipfun(f, mpmath.mpf(argument), m=parameter) for f in ("sn", "cn", "dn")
-            )  # The argument's own rounding is up to 230 * 1e-16 and the functions' slopes are at most 1.
+            )  # The rounding of the argument is at most 230e-16, and the functions have slopes of at most 1.
             tolerance = 8e-16 * (1 + abs(argument))
             assert abs(sn - exact_sn) < tolerance
             assert abs(cn - exact_cn) < tolerance
@@ -65,7 +65,7 @@ def test_the_phase_of_the_benchmark_pendulum_is_accurate_after_845_periods() -> 
     (x, y), t = scene.bob(scene.motion(scene.duration).pose)[0], scene.duration
     with mpmath.workdps(40):
         sine = mpmath.ellipfun("sn", mpmath.sqrt(9.81) * t + mpmath.ellipk(0.5), m=0.5) / mpmath.sqrt(2)
-        # 845 periods, each rounded at 2e-16 of 2.4 s, at speeds to 4.4 m/s.
+        # Each of the 845 periods of 2.4 s has a rounding of 2e-16, and the speed is at most 4.4 m/s.
         assert abs(x - 2 * sine * mpmath.sqrt(1 - sine**2)) < 3e-12
         assert abs(y + 1 - 2 * sine**2) < 3e-12
 
@@ -79,7 +79,7 @@ def test_passages_agree_with_sign_changes_of_the_sampled_motion(pendulum):
         seen = t[1:][side[1:] * side[:-1] < 0]
         assert len(seen) > 10
         np.testing.assert_allclose(pendulum.passages(angle, float(t[-1])), seen, atol=2 * t[1])
-        for last in (0, 3, len(seen) - 1):  # `until` just after a passage, and just before it
+        for last in (0, 3, len(seen) - 1):  # `until` shortly after a passage, and shortly before it
             exact = float(pendulum.passages(angle, float(t[-1]))[last])
             assert len(pendulum.passages(angle, exact * (1 + 1e-12))) == last + 1
             assert len(pendulum.passages(angle, exact * (1 - 1e-12))) == last
@@ -96,14 +96,14 @@ def test_accelerations_from_joint_forces_agree_with_lagranges_equations(links: i
     chain, angle, rate = random_chain(links)
     found = chain.accelerations(angle, rate)
     expected = np.array([lagrangian_accelerations(chain, a, r) for a, r in zip(angle, rate, strict=True)])
-    # Both systems' condition numbers grow like links^2.
+    # The condition numbers of both systems are proportional to links^2.
     assert np.abs(found - expected).max() < 1e-15 * (10 + links**2) * np.abs(expected).max()
     alone = np.array([chain.forces(a, r) for a, r in zip(angle, rate, strict=True)])
     assert np.abs(chain.forces(angle, rate) - alone).max() < 1e-12 * np.abs(alone).max()
 
 
 def lagrangian_accelerations(chain: Chain, angle, rate):
-    """angle'' (links,) [rad/s^2] by Lagrange's equations, dense: no joint force in it; the second opinion."""
+    """angle'' (links,) [rad/s^2] by Lagrange's equations with a dense matrix, without joint forces."""
     difference = angle[:, None] - angle
     right = -(chain.inertia_matrix * np.sin(difference)) @ rate**2 - chain.stiffness * np.sin(angle)
     return np.linalg.solve(chain.inertia_matrix * np.cos(difference), right)
@@ -115,9 +115,10 @@ def test_the_error_bound_of_a_chain_of_one_link_is_above_the_error_against_the_c
     true = np.abs(chain.motion(t).pose - exact.motion(t).pose)[..., 0, 2].max()
     stated = chain.truth_error(t).max()
     assert stated > true > 0
-    # Ten times two errors of one size: a bound that says something.
+    # The bound is ten times the difference of two integrations, so it may not exceed the error by much more than
+    # that.
     assert stated < 1e3 * true
-    # Some dozen windows, each with a rounding of its accelerations.
+    # About a dozen windows, each with a rounding error of the accelerations.
     assert true < 1e-14
 
 
@@ -165,7 +166,8 @@ def test_forces_grow_without_limit_near_a_singular_position_of_several_loops() -
     for loops, grows in ((1, False), (2, True), (10, True)):
         scene = NFourBar(loops=loops)
         largest = np.abs(scene.motion(scene.singular_times(2.0)[0] - before).reaction).max(axis=1)
-        # cos(angle) = rate * time left: ten times nearer, ten times larger, once the finite part is left behind.
+        # cos(angle) is proportional to the remaining time, so the force grows tenfold if the time is ten times
+        # shorter.
         ratio = largest[2] / largest[1]
         assert (7 < ratio < 11) if grows else (0.9 < ratio < 1.1)
 
@@ -174,15 +176,16 @@ def test_the_branch_distinguishes_parallelograms_from_folded_loops() -> None:
     scene, mechanism = NFourBar(), NFourBar().mechanism()
     assert np.all(scene.branch_of(scene.motion(np.linspace(0, 10, 501)).pose) == 1)
     assert np.all(scene.branch_of(scene.motion(scene.singular_times(10.0)).pose) == 1)
-    # The first loop folded on its left: crank 0 along the ground, coupler 0 on crank 1. Or the second on its right:
-    # crank 2 along the ground to pivot 1, coupler 1 back along crank 1, while that stands upright, and while it lies to
-    # the left, where a parallelogram is nearer than the first way to fold.
+    # Crank, pivot position, coupler and angle of a folded loop. First: crank 0 lies along the ground, coupler 0
+    # along crank 1. Second and third: crank 2 lies along the ground to pivot 1, coupler 1 along crank 1. At t =
+    # 1.25 s crank 1 points to the left, where the angles of a parallelogram fit better than those of the first
+    # folded form.
     for t, crank, at, coupler, way in ((0.3, 0, 0.5, 3, 0.0), (0.3, 2, 1.5, 4, math.pi), (1.25, 2, 1.5, 4, math.pi)):
         folded = scene.motion([t]).pose[0].copy()
         angle = folded[1, 2]
         folded[crank] = (at, 0.0, way)
         folded[coupler] = (1 + 0.5 * math.cos(angle), 0.5 * math.sin(angle), angle + way)
-        assert np.abs(mechanism.gap(folded, 0.0)).max() < 1e-14  # a branch too
+        assert np.abs(mechanism.gap(folded, 0.0)).max() < 1e-14  # the folded loop satisfies the joints
         assert scene.branch_of(folded) == -1
         assert t == 0.3 or math.cos(angle) < -1 / 2
 
@@ -197,7 +200,7 @@ def test_cranks_that_start_upright_at_rest_do_not_move():
 
 
 def test_segment_masses_sum_to_one_and_radii_of_gyration_agree_with_winters_table() -> None:
-    """Winter: trunk and two legs are the whole mass, and his third column has the radius of gyration about an end."""
+    """Winter's third column has the radius of gyration about an end of the segment."""
     assert HEAD_ARMS_TRUNK.mass + 2 * THIGH.mass + 2 * SHANK_AND_FOOT.mass == pytest.approx(1.0, abs=1e-12)
     for segment, about_the_end in ((HEAD_ARMS_TRUNK, 0.798), (THIGH, 0.540), (SHANK, 0.528), (SHANK_AND_FOOT, 0.735)):
         # printed to three digits
@@ -209,9 +212,10 @@ def test_the_swaying_person_starts_on_an_oscillating_mode() -> None:
     squares, shapes = modes_upright(scene)
     assert np.sum(squares < 0) == 2
     parts = np.abs(np.linalg.solve(shapes, scene.start[:5] - UPRIGHT))
-    # Six digits of the start are given: what lies on the other modes is what they leave out.
+    # The start has six digits, so the other modes have amplitudes of about 1e-6.
     assert np.all(np.delete(parts, 0) < 1e-5 * parts[0])
-    # The linearised motion: a quarter of a swing brings the lifted leg to upright, but for third powers of 0.1 rad.
+    # In the linearised motion, the lifted leg is upright after a quarter period; the error is of third order in 0.1
+    # rad.
     quarter = math.pi / 2 / math.sqrt(-squares[0])
     aside = scene.states([quarter])[0][0] - np.array(UPRIGHT)
     assert np.abs(aside).max() < 0.05 * 0.1

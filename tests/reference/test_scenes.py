@@ -36,12 +36,13 @@ from reference.trajectory import Trajectory, energy, joint_gap, slip
 from tests.mechanisms import SCENES_OF_LIMITS
 from tests.present import present
 
-# No bar of this one turns fully: released here, the crank runs into both of its limits within two seconds.
+# A triple-rocker: released at this angle, the crank reaches both of its limits within two seconds.
 TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1), start=0.2, duration=2.0)
 TURNED = FreeFourBar(
     *(0.5, 0.9, 0.8, (-0.6, 0.7)), branch=-1, rate=-4.0, density=(1.0, 3.0, 0.5), start=1.0, gravity=(3.0, -8.0)
 )
-# The numbers of the list are those of the chapter, where signs and zeros may hide a mistake.
+# The scenes of the catalogue have the chapter's numbers. These scenes have other signs and no zeros, which could hide
+# an error.
 OTHERS: tuple[Scene, ...] = (
     *(TRIPLE_ROCKER, TURNED, DrivenFourBar(rate=-7.0, branch=-1, revolutions=0.5)),
     DrivenFourBar(1.0, 0.9, 1.1, (0.3, -0.4), revolutions=2.0, density=(1.0, 2.0, 3.0)),
@@ -65,7 +66,7 @@ OTHERS: tuple[Scene, ...] = (
     TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, mass=60.0, height=1.6, hip_y=0.72),
 )
 ALL = (*SCENES, *SCENES_OF_LIMITS, *OTHERS)
-# Of configurations and of velocities, by name; a chain has as many as links.
+# Freedoms of configuration and of velocity by the scene's name. A chain has one freedom for each link.
 FREEDOMS: dict[str, tuple[int, int]] = {
     **dict.fromkeys(("driven_four_bar", "parallelogram", "overdriven_four_bar", "driven_slider_crank"), (0, 0)),
     **dict.fromkeys(("sleigh", "sleigh_backwards", "skate_on_slope"), (3, 2)),
@@ -73,7 +74,7 @@ FREEDOMS: dict[str, tuple[int, int]] = {
     **{"car_and_trailer": (4, 1), "cart": (5, 2), "elliptic_gears": (0, 0), "held_by_skates": (3, 0)},
     **{"person_swaying": (5, 5), "person_one_foot": (5, 5), "person_two_feet": (3, 3)},
 }
-NEWTON = 1e-8  # of the largest force: what differences of twists leave
+NEWTON = 1e-8  # relative to the largest force: the error of the finite differences of twists
 
 
 def name_of(each: Scene) -> str:
@@ -84,14 +85,16 @@ each_scene = pytest.mark.parametrize("each", ALL, ids=name_of)
 
 
 def until(each: Scene) -> float:
-    """Up to when the truth is compared [s]: a second at most, and no longer than it says something of a body."""
+    """The end of the comparison [s]: at most one second, and before the time at which the ideal motion ends or stops
+    to be valid.
+    """
     stops = (getattr(each, "stopping_time", math.inf), getattr(each, "corner", math.inf))
     return min(each.duration, each.horizon, each.comparable_until, 1.0, *(0.9 * stop for stop in stops))
 
 
 @cache
 def known(each: Scene) -> tuple[Mechanism, Trajectory, np.ndarray, np.ndarray]:
-    """Mechanism, motion at some instants, and the rates of its poses and of its twists, by differences of order 8."""
+    """Mechanism, motion at five times, and derivatives of its poses and twists by finite differences of order 8."""
     mechanism, middle = each.mechanism(), np.linspace(0.1, 0.8, 5) * until(each)
     motion = each.motion(middle)
     step = 0.005 / max(1 / min(mechanism.time_scale, until(each)), np.abs(motion.twist[..., 2]).max())
@@ -102,17 +105,17 @@ def known(each: Scene) -> tuple[Mechanism, Trajectory, np.ndarray, np.ndarray]:
 
 
 def truth_error(each: Scene) -> Callable[[np.ndarray], np.ndarray] | None:
-    """What tells how exact a truth by integration is; None where a closed form is the truth."""
+    """The function that bounds the error of an integrated reference motion; None for a closed form."""
     return getattr(each, "truth_error", None) or getattr(getattr(each, "motion_law", None), "truth_error", None)
 
 
 def fastest(mechanism: Mechanism, motion: Trajectory) -> float:
-    """1/s, of turning or of a length; of a mechanism that rests what its own time scale says."""
+    """The largest rotation rate, or speed over length [1/s], at least the inverse of the mechanism's time scale."""
     return max(float(np.abs(motion.twist / mechanism.pose_unit).max()), 1 / mechanism.time_scale)
 
 
 def off_the_joints(mechanism: Mechanism, motion: Trajectory) -> float:
-    """The largest gap and slip, in lengths and speeds of the motion."""
+    """The largest gap and slip, relative to the length and the speed of the motion."""
     place = 1 + np.abs(motion.pose / mechanism.pose_unit).max()
     length = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     gap = np.nanmax(np.abs(joint_gap(mechanism, motion) / length), initial=0.0) / place
@@ -120,7 +123,9 @@ def off_the_joints(mechanism: Mechanism, motion: Trajectory) -> float:
 
 
 def off_newton(mechanism: Mechanism, motion: Trajectory, change: np.ndarray) -> float:
-    """What M a = f + J^T r lacks, in the largest force; forces that rows leave undetermined are whatever fits best."""
+    """The residual of M a = f + J^T r, relative to the largest force; undetermined reactions are fitted by least
+    squares.
+    """
     inertias = mechanism.inertias / mechanism.pose_unit
     free = mechanism.unconstrained(motion.pose, motion.twist)
     columns = np.swapaxes(mechanism.rows(motion.pose), -1, -2)
@@ -137,11 +142,12 @@ def off_newton(mechanism: Mechanism, motion: Trajectory, change: np.ndarray) -> 
 def test_a_scenes_motion_starts_at_the_mechanisms_state_and_satisfies_its_joints(each: Scene) -> None:
     mechanism, motion, rate, _ = known(each)
     start = each.motion([0.0])
-    # Rounding of places and of turns; the truth may begin with one that it makes of its own coordinates.
+    # Rounding of positions and angles. The reference motion may begin with a rounding of its own coordinates.
     for found, own in ((start.pose[0], mechanism.pose), (start.twist[0], mechanism.twist)):
         assert np.abs(found - own).max() < 3e-14 * (1 + np.abs(own).max())
     assert off_the_joints(mechanism, motion) < 1e-13
-    # (w h)^8 / 630 with w h = 0.005 of the fastest turning, or some times that in between, and rounding / h.
+    # The truncation error is (w h)^8 / 630, with w h = 0.005 for the fastest rotation; the rounding error is eps /
+    # h.
     assert np.abs((rate - motion.twist) / mechanism.pose_unit).max() < 1e-10 * fastest(mechanism, motion)
     freedoms = FREEDOMS.get(each.name, (getattr(each, "links", 1),) * 2)
     assert mechanism.degrees_of_freedom() == freedoms
@@ -155,7 +161,7 @@ def test_a_scenes_reactions_satisfy_newtons_law(each: Scene) -> None:
 
 
 def told(each: Scene, t: np.ndarray) -> np.ndarray | None:
-    """The accelerations that a scene works its reactions out from; None where it needs none."""
+    """The accelerations from which the scene computes its reactions; None if the scene needs no accelerations."""
     if isinstance(each, FourBarScene):
         return each._bodies(each._angles(t))[2]  # pyright: ignore[reportAttributeAccessIssue]
     return each.placement(t)[2] if isinstance(each, PlacedScene) else None
@@ -183,18 +189,19 @@ def test_lagrange_multipliers_give_the_same_motion_as_the_scene(each: Scene) -> 
     mechanism = each.mechanism()
     run = Lagrange(tolerance=1e-13).build(mechanism, until(each) / 8)(4, 1)
     exact = each.motion(run.t)
-    met = np.all(np.isfinite(run.pose), axis=(1, 2))  # they stop where a position is singular
+    met = np.all(np.isfinite(run.pose), axis=(1, 2))  # Lagrange's equations stop at a singular position
     assert met[1]
-    # Two integrations of a tolerance of 1e-13 a step, grown by what nearly straight knees make of a difference.
+    # Both integrations have a tolerance of 1e-13 per step; nearly straight knees amplify the difference.
     assert np.abs((run.pose - exact.pose) / mechanism.pose_unit)[met].max() < 1e-10
     reaction = np.nan_to_num(np.abs(run.reaction - exact.reaction))[met]
     assert reaction.max(initial=0.0) <= 1e-8 * np.nanmax(np.abs(exact.reaction[met]), initial=0.0)
 
 
-# One scene of each name: an integration states its error by the same rule for all numbers.
+# One scene of each name, since the bound of an integration is computed by the same rule for all numbers.
 @pytest.mark.parametrize("each", {each.name: each for each in ALL[::-1] if truth_error(each)}.values(), ids=name_of)
 def test_the_error_bound_of_an_integrated_reference_motion_is_small(each: Scene) -> None:
-    # Tolerances of 1e-13 a step, over some hundreds; a standing knee makes a deviation e-fold in 0.03 s.
+    # The tolerance is 1e-13 per step in several hundred steps. For a standing knee a deviation grows by a factor of
+    # e in 0.03 s.
     last = min(each.horizon, each.duration, 0.9 * getattr(each, "corner", math.inf))
     stated = present(truth_error(each))(np.linspace(0.0, last, 9))
     assert stated.max() < (1e-9 if each.name == "person_swaying" else 1e-10)

@@ -1,7 +1,7 @@
-"""Every scene in other units: a mechanism of nanometres or of gigametres moves as the same in metres does.
+"""Scenes in other units: the motion of a mechanism of nanometres or gigametres is the scaled motion in metres.
 
-A change of unit by a power of two changes no digit of a product, a sum or a root. What differs after it is a number in
-the code that has a unit and should have none.
+A change of unit by a power of two changes no digit of a product, sum or root. So a difference shows a constant in the
+code that depends on a unit.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from tests.mechanisms import SCENES_OF_LIMITS
 
-# Exponents of length, time and mass of each field's unit; what is not here has none.
+# Exponents of length, time and mass in the unit of each field; fields without a unit are absent.
 LENGTH, TIME, MASS = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 RATE, SPEED, PULL, INERTIA = (0, -1, 0), (1, -1, 0), (1, -2, 0), (2, 0, 1)
 _METRES = (
@@ -35,9 +35,9 @@ UNITS = {
     **{"speed": SPEED, "gravity": PULL, "density": (-1, 0, 1), "stiffness": (0, -2, 1), "torque": (2, -2, 1)},
 }
 OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
-POSES = ("start", "pose")  # x, y, angle, where they are three numbers
-# Units of length [m], time [s] and mass [kg]: exponents of which no sum with small factors is zero, so that no mistake
-# in one of them makes up for one in another.
+POSES = ("start", "pose")  # fields with x, y and angle
+# Units of length [m], time [s] and mass [kg]. No sum of their exponents with small integer factors is zero, so that
+# errors in two exponents cannot cancel.
 SCALES = {"small": (2.0**-30, 2.0**-17, 2.0**23), "large": (2.0**30, 2.0**19, 2.0**-13)}
 
 
@@ -48,7 +48,7 @@ def scaled(value, factor):
 
 
 def in_other_units(scene: Scene, unit: tuple[float, float, float]) -> Scene:
-    """The same scene, in units of length, time and mass that are these parts of a metre, a second, a kilogram."""
+    """The same scene with its numbers in these units of length [m], time [s] and mass [kg]."""
     changes = {}
     for field in fields(scene):  # pyright: ignore[reportArgumentType] (each scene's class is a dataclass)
         value = getattr(scene, field.name)
@@ -68,7 +68,7 @@ def off(found, expected):
 
 
 def difference(scene: Scene, unit: tuple[float, float, float]) -> float:
-    """The largest of poses, twists and reactions, of the motion in metres and seconds (or of 1)."""
+    """The largest relative difference of poses, twists and reactions between the scene and the scene in other units."""
     other = in_other_units(scene, unit)
     until = min(scene.duration, scene.horizon, scene.comparable_until, getattr(scene, "corner", math.inf) / 2)
     times = until * np.array([0.0, 0.13, 0.5, 1.0])
@@ -89,9 +89,9 @@ def difference(scene: Scene, unit: tuple[float, float, float]) -> float:
     return max(parts)
 
 
-# All but the crank that can't turn as far as it is driven: it has no motion to compare.
+# The crank that is driven beyond its limit is left out, since its motion ends.
 ALL = tuple(scene for scene in (*SCENES, *SCENES_OF_LIMITS) if scene.name != "overdriven_four_bar")
-# Whose truth takes a second and more, or a fifth of it in each of eight units.
+# Scenes whose reference motion takes more than a second, or a fifth of a second in each of eight units.
 COSTLY = (
     *("free_four_bar", "spinning_four_bar", "cart", "free_slider_crank", "slider_at_dead_centre", "pendulum_2"),
     *("pendulum_10", "pendulum_100", "pendulum_n", "rolling_cam", "rolling_in_ring", "rolling_ellipse"),
@@ -114,7 +114,7 @@ COSTLY = (
     ids=lambda scene: scene.name,
 )
 def test_the_motion_of_a_scene_does_not_depend_on_units(scene: Scene, scale: str) -> None:
-    # In closed form, or integrated in nearly the same steps, or solved for iteratively: what is left is rounding, which
-    # of costly ones grows tenfold and more up to the horizon.
-    allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # joint forces of a hundred links sum more roundings
+    # The motions differ by rounding. Scenes in COSTLY are slow, and their rounding errors may grow tenfold up to
+    # the horizon.
+    allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # joint forces sum more roundings
     assert difference(scene, SCALES[scale]) < allowed

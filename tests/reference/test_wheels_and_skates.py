@@ -81,7 +81,7 @@ def test_a_fast_sleigh_moves_straight_after_its_settling_time():
         gone, settled = long[1] - long[0], long[1, 2]
         top = math.copysign(sleigh._top_speed * (1000 - 1e-2 - sleigh._settled), sleigh.offset)
         assert np.abs(gone[:2] - top * np.array([math.cos(settled), math.sin(settled)])).max() < 1e-14 * abs(top)
-    # Before it settles the quadrature alone has the motion: the two halves agree.
+    # The quadrature and the straight motion agree at a time after the settling time.
     sleigh = ChaplyginSleigh()
     later = sleigh._settled + 1.0
     assert abs(sleigh._moved(later) - sleigh.skate_pose(later)[0] @ [1, 1j, 0]) < 1e-13
@@ -95,14 +95,14 @@ def test_a_small_turning_rate_of_a_backward_sleigh_grows_exponentially_until_it_
     speed = SleighBackwards().rates([0.0, 20.0])[0]
     assert speed[0] == pytest.approx(-1.0, abs=1e-6)
     assert speed[1] == pytest.approx(1.0, abs=1e-6)
-    # Two turns of the heading's limit: pi k/|a| for a full reversal from a straight run.
+    # The heading changes by pi k / |a| in a full reversal.
     assert SleighBackwards().heading(200.0) == pytest.approx(math.pi * math.sqrt(0.4) / 0.5, rel=1e-3)
 
 
 def test_a_tow_at_an_equilibrium_angle_does_not_rotate():
     assert np.abs(Tow(1.0, 0.0).relative_angle([1.0, -1.0, 1e3, -1e3])).max() == 0
     assert np.all(Tow(1.0, math.pi).relative_angle([1.0, 1e3]) == math.pi)
-    assert Tow(1.0, 1e-9).relative_angle(-1e3) == pytest.approx(math.pi, abs=1e-15)  # pushed, it folds over
+    assert Tow(1.0, 1e-9).relative_angle(-1e3) == pytest.approx(math.pi, abs=1e-15)  # unstable backwards
 
 
 @pytest.mark.parametrize(("hitch", "speed"), [(0.6, 1.3), (-0.4, -0.4)])
@@ -114,7 +114,7 @@ def test_a_trailer_behind_a_circling_car_is_a_tow(hitch, speed):
     tow = Tow(3.0, 0.7 - direction, pace / curvature, (0.0, 0.0, direction))
     assert np.abs(tow.heading(pace * speed * t) - driven.pose[:, 1, 2]).max() < 2e-12
     assert driven.error.max() < 2e-11
-    if speed > 0:  # v sin b - h w cos b = L w: it circles with the car
+    if speed > 0:  # steady state: v sin b - h w cos b = L w
         settled = -(math.asin(3.0 * curvature / pace) + math.atan(hitch * curvature))
         assert car.drive(speed, 0.3, (0, 0, 0), (0.4,), [300.0]).bends[0, 0] == pytest.approx(settled, abs=1e-11)
 
@@ -134,18 +134,21 @@ def test_axles_of_a_car_with_trailers_have_no_lateral_velocity():
     heading = middle.pose[:, :, 2]
     across = -np.sin(heading) * velocity[..., 0] + np.cos(heading) * velocity[..., 1]
     along = np.cos(heading) * velocity[..., 0] + np.sin(heading) * velocity[..., 1]
-    assert np.abs(across).max() < 1e-8  # order 6 of rates about 2/s, and 1e-12/h
+    assert np.abs(across).max() < 1e-8  # truncation error of order 6, and rounding
     assert np.abs(along - middle.speed).max() < 1e-8
 
 
 def test_the_jackknife_time_of_a_reversing_trailer_agrees_with_the_closed_form():
     car = CarWithTrailers(2.0, (1.5,), (0.0,))
     driven = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [10.0, 20.0])
-    # tan(psi/2) grows as exp(s/L); it is 1 at a right angle.
+    # tan(psi/2) is proportional to exp(s/L), and it is 1 at a right angle.
     assert driven.jackknifed_at == pytest.approx(-1.5 * math.log(math.tan(0.005)), abs=1e-10)
     assert driven.bends[-1, 0] == pytest.approx(2 * math.atan(math.tan(0.005) * math.exp(20 / 1.5)), abs=1e-10)
     assert car.drive(1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [20.0]).jackknifed_at is None
-    for bend in (-0.3, 0.3):  # straight behind the car, the first trailer's axle pushes the second as a tow
+    for bend in (
+        -0.3,
+        0.3,
+    ):  # the first trailer stays straight, and its axle is the hitch of the second
         pair = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
         second = pair.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, bend), [4.0], limit=1.0)
         assert (driven.jackknifed, second.jackknifed) == (1, 2)
@@ -164,7 +167,7 @@ def test_a_caster_on_a_circling_cart_is_a_tow(turning_rate):
 
 def test_casters_turn_by_pi_when_the_cart_reverses():
     casters = Casters(((1.0, 0.3), (1.0, -0.3)), 0.1)
-    # Halfway when tan(beta/2) = 1: s = c log(1/tan(0.0005)).
+    # beta is a right angle when tan(beta/2) = 1, at s = c log(1/tan(0.0005)).
     way = -0.1 * math.log(math.tan(0.0005))
     swung, _ = casters.swing((1e-3, -1e-3), -0.5, 0.0, [0.0, way / 0.5, 20.0])
     assert np.abs(swung[1:] - np.array([[0.5, -0.5], [1, -1]]) * math.pi).max() < 1e-8
@@ -172,7 +175,7 @@ def test_casters_turn_by_pi_when_the_cart_reverses():
 
 
 def test_the_wheels_and_kingpins_of_a_cart_are_at_hand_computed_points():
-    """Written down by hand, in metres from each body's centre of mass: the truth takes its places from `Casters`."""
+    """The points [m] from each body's centre of mass are computed by hand, without `Casters`."""
     cart = Cart(centre=0.3, front=0.8, width=0.5, trail=0.12, caster_centre=0.04, redundant=True).mechanism()
     points = {joint.name: joint.second_point for joint in cart.joints if isinstance(joint, Skate)}
     assert points["left wheel"] == pytest.approx((-0.3, 0.25))
@@ -216,7 +219,7 @@ def test_rows_with_a_velocity_component_are_skates_and_not_integrable(row):
     for place in RANDOM.normal(size=(4, 3)):
         body = Body("body", 1.0, 1.0, tuple(place.tolist()))
         held = Mechanism((body,), (skate,)).rows(place[None])[0]
-        # Rounding of a point and a blade's angle, relative to the row.
+        # The bound is the rounding of the skate's point and angle, relative to the row.
         assert held == pytest.approx(one_form(row)(place)[0] / size, abs=1e-15 * (1 + np.abs(row).max() / size))
         assert frobenius(row, place) == pytest.approx(-(size**2), rel=1e-13)
     unit = tuple(number / max(map(abs, row)) for number in row)
@@ -232,7 +235,7 @@ def test_the_coriolis_like_term_has_factor_one_for_a_skate_and_two_for_a_slider(
 
 
 def test_a_row_that_is_not_exact_may_be_integrable():
-    """exp(x) times d(y + theta^2): a test of exactness, as the box has it, would call it nonholonomic."""
+    """The row is exp(x) d(y + theta^2), which is integrable and not exact."""
     place = np.array([0.3, -0.2, 0.8])
 
     def scaled_position(place):
@@ -246,7 +249,7 @@ def test_a_row_that_is_not_exact_may_be_integrable():
 
 
 def test_a_row_with_zero_obstruction_at_one_place_only_is_not_integrable():
-    """w = dy + x^2 dtheta has w . curl w = 2 x: zero at x = 0, where a test at one place would be deceived."""
+    """The row w = dy + x^2 dtheta has w . curl w = 2 x, which is zero only at x = 0."""
 
     def deceiving(place):
         x = place[..., 0]
@@ -265,7 +268,7 @@ def test_a_row_with_zero_obstruction_at_one_place_only_is_not_integrable():
         (four_bar(1.0, 1.0), (0, 0), (0,)),
         (Cart().mechanism(), (5, 2), (2, 3, 5)),
         (Cart(redundant=True).mechanism(), (5, 2), (2, 3, 5)),
-        # One freedom of velocity is one curve: skates that hold the steering can be integrated together.
+        # With one freedom of velocity the motion follows one curve, so the skates are integrable together.
         (CarAndTrailer().mechanism(), (4, 1), (1,)),
         (CarAndTrailer(redundant=True).mechanism(), (4, 1), (1,)),
     ],
