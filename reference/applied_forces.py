@@ -15,10 +15,10 @@ from reference.rows import stacked
 
 @dataclass(frozen=True)
 class ForceGroup:
-    """Force elements of one class, evaluated together.
+    """Force elements of one class, which are evaluated together.
 
-    element: each numeric field is an array with the elements along its first axis. first, second (elements,): indices
-    of the bodies; the ground has the index after the last body.
+    element: an object of the class whose numeric fields are arrays with the elements along the first axis. first,
+    second (elements,): indices of the bodies; the ground's index follows the last body's.
     """
 
     element: Any
@@ -28,7 +28,7 @@ class ForceGroup:
 
 @dataclass(frozen=True)
 class AppliedForces:
-    """All force elements between `bodies` bodies."""
+    """The force elements of a mechanism; `bodies` is the number of its bodies."""
 
     groups: tuple[ForceGroup, ...]
     bodies: int
@@ -36,7 +36,7 @@ class AppliedForces:
 
     @classmethod
     def of(cls, forces: Sequence[ForceElement], index: Mapping[str | None, int]) -> AppliedForces:
-        """From elements; `index` has the index of each body by name, and the last index, the ground's, under None."""
+        """Group the elements by class; `index` has the index of each body by name, and under None the ground's."""
         by_class: dict[type, list[Any]] = {}
         coupled: list[tuple[CoupledForce, Ends]] = []
         for element in forces:
@@ -61,13 +61,13 @@ class AppliedForces:
         return any(element.dissipates for element in elements)
 
     def on(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
-        """Generalised forces (..., bodies, 3) [N, N, N m] at poses and twists (..., bodies, 3) of one shape."""
+        """Generalised forces (..., bodies, 3) [N, N, N m] at poses and twists of the same shape."""
         poses, twists = self._with_ground(pose), self._with_ground(twist)
         out = np.zeros(poses.shape, dtype=np.result_type(poses, twists, float))
         for group in self.groups:
             ends = (poses[..., group.first, :], poses[..., group.second, :])
             forces = group.element.on(*ends, twists[..., group.first, :], twists[..., group.second, :])
-            for index in range(len(group.first)):  # one by one, since several elements may act on one body
+            for index in range(len(group.first)):  # in a loop, since several elements may act on one body
                 out[..., group.first[index], :] += forces[..., index, :3]
                 out[..., group.second[index], :] += forces[..., index, 3:]
         for element, ends in self.coupled:
@@ -75,7 +75,7 @@ class AppliedForces:
         return out[..., :-1, :]
 
     def potential(self, pose: NDArray[Any]) -> NDArray[Any]:
-        """The sum of the elements' potentials (...) [J] at poses (..., bodies, 3)."""
+        """The sum of the elements' potential energies (...) [J] at poses (..., bodies, 3)."""
         poses = self._with_ground(pose)
         out = np.zeros(poses.shape[:-2], dtype=np.result_type(poses, float))
         for group in self.groups:

@@ -1,14 +1,17 @@
-"""Rigid bodies, and the joints between two of them, or one and the ground: gap, and velocity rows J v = rate.
+"""Rigid bodies, and the joints between two bodies or between a body and the ground.
 
-The vocabulary is closed: `JOINTS` has every class, and a joint enters only when a scene needs it and `engines.lagrange`
-runs it. Besides the facts of `elements.JointElement`, a joint has `labels`, the names of its `size` rows, and two
-functions of the poses of its two bodies (..., 3), which are zero for the ground: `gap(first, second, t)` (..., size),
-and `rows(first, second)` (..., size, 6), whose columns are x, y and angle of the first body and then of the second.
-Rows are analytic functions, so they can be differentiated by a complex step. The reaction of a row acts along it on the
-second body, and in the opposite direction on the first. `rows.JointRows` evaluates stackable joints of one class
-together; their numeric fields are then arrays with the joints along the first axis.
+A joint is defined by its gap, which is zero if the joint is satisfied, and by velocity rows J with J v = rate. `JOINTS`
+has every class; a class is added only if a scene needs it and `engines.lagrange` implements it.
 
-Points (..., 2) [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates.
+Besides the properties of `elements.JointElement`, a joint has `labels`, the names of its `size` rows, and two functions
+of the poses of its two bodies (..., 3); the ground has the pose zero. `gap(first, second, t)` has the shape (...,
+size). `rows(first, second)` has the shape (..., size, 6): its columns are x, y and angle of the first body, then of the
+second. Rows are analytic functions, so they can be differentiated by a complex step. The reaction of a row acts on the
+second body, and its opposite on the first. `rows.JointRows` evaluates the stackable joints of one class together, with
+arrays in their numeric fields.
+
+Points (..., 2) [m] are in the bodies' own frames, from the centre of mass; points on the ground (None) are world
+coordinates.
 """
 
 from __future__ import annotations
@@ -32,8 +35,8 @@ Triple = tuple[float, float, float]
 Ratio = Annotated[float, Rule(lambda value: value != 0, "other than zero")]
 AnyArray = NDArray[Any]
 
-# Distance from a slot's line, relative to the span of a spring, up to which the spring's end is on the line: far above
-# rounding, far below a mistake.
+# Distance between a slot's line and a point, relative to the span of a spring, up to which the point is on the line.
+# The value is far above rounding and far below a mistake in the input.
 ON_LINE = 1e-9
 
 
@@ -60,14 +63,13 @@ def bodies_of(names: Sequence[str], masses: Any, inertias: Any, pose: Any, twist
 
 @dataclass(frozen=True)
 class _JointOfTwo(BetweenTwo, JointElement):
-    """Base of the joints of two bodies."""
+    """Base of joints between two bodies."""
 
 
 @dataclass(frozen=True)
 class Pin(_JointOfTwo):
     """An ideal hinge (18.62): the point `first_point` of the first body and `second_point` of the second coincide.
 
-    Points [m] are in the body's own frame, from its centre of mass; on the ground (None) they are world coordinates.
     Rows: velocity of the second point minus that of the first, x then y. Reaction: force on the second body [N].
     """
 
@@ -78,11 +80,9 @@ class Pin(_JointOfTwo):
     second_point: Vector
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Distance of the two points, second minus first (..., 2) [m], for the bodies' poses (..., 3)."""
         return apart(first, second, self.first_point, self.second_point)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        """Velocity rows (..., 2, 6): columns are the first body's x, y, angle and then the second's."""
         return point_rows(first, second, self.first_point, self.second_point)
 
 
@@ -110,12 +110,13 @@ class Drive(_JointOfTwo):
         return (self.turning_rate,)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Relative angle minus the prescribed one (..., 1) [rad], at times t [s] that broadcast against the poses."""
+        """Relative angle minus the prescribed angle (..., 1) [rad] at times t [s], which broadcast against the
+        poses.
+        """
         prescribed = np.asarray(self.offset) + np.asarray(self.turning_rate) * np.asarray(t)
         return (second[..., 2] - first[..., 2] - prescribed)[..., None]
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        """Velocity row (..., 1, 6)."""
         rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
         rows[..., 0, 2] = -1
         rows[..., 0, 5] = 1
@@ -124,12 +125,12 @@ class Drive(_JointOfTwo):
 
 @dataclass(frozen=True)
 class Slot(_JointOfTwo):
-    """A straight slot in the first body, in which the point `second_point` of the second slides.
+    """A straight slot in the first body, in which the point `second_point` of the second body slides.
 
-    The line passes through `first_point` [m] of the first body at `line_angle` [rad] in its frame; points are from the
-    centre of mass, on the ground (None) world coordinates. The second body may turn; add a `Drive` of rate zero for a
-    block that keeps its angle. Row: velocity of the second point across the line, to the left of its direction,
-    relative to the first body's material there. Reaction: force across the line on the second body [N].
+    The line passes through `first_point` [m] of the first body at the angle `line_angle` [rad] in its frame. The second
+    body may rotate; a `Drive` of rate zero prevents its rotation. Row: velocity of the second point perpendicular to
+    the line, to the left of its direction, relative to the first body. Reaction: force perpendicular to the line on the
+    second body [N].
     """
 
     labels: ClassVar[tuple[str, ...]] = ("across",)
@@ -143,7 +144,7 @@ class Slot(_JointOfTwo):
         return ((self.second, self.second_point),)
 
     def guides(self, places: tuple[Place, ...], span: float) -> bool:
-        """True if one place is the sliding point and the other is on the line, in the first body."""
+        """Whether one point is the sliding point, and the other one is on the line in the first body."""
         for (line_body, on_line), (sliding_body, sliding_point) in (places, places[::-1]):
             if (line_body, sliding_body) != (self.first, self.second):
                 continue
@@ -154,25 +155,23 @@ class Slot(_JointOfTwo):
         return False
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Distance of the second point from the line, positive to its left (..., 1) [m], for poses (..., 3)."""
+        """Distance of the second point from the line, positive to its left (..., 1) [m]."""
         line = first[..., 2] + np.asarray(self.line_angle)
         across_x, across_y = np.moveaxis(apart(first, second, self.first_point, self.second_point), -1, 0)
         return (np.cos(line) * across_y - np.sin(line) * across_x)[..., None]
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        """Velocity row (..., 1, 6): columns are the first body's x, y, angle and then the second's."""
         line = first[..., 2] + np.asarray(self.line_angle)
         return direction_row(first, second, self.second_point, -np.sin(line), np.cos(line))
 
 
 @dataclass(frozen=True)
 class Skate(_JointOfTwo):
-    """An ideal skate or massless wheel (18.64): a point of the second body can't move across the blade.
+    """An ideal skate or massless wheel (18.64): a point of the second body can't move perpendicular to the blade.
 
-    `second_point` [m] is the contact of the blade, in the second body's own frame from its centre of mass, and `angle`
-    [rad] the blade's direction in that frame. Row: the velocity of that point across the blade, relative to the
-    material of the first body under it. A skate constrains no configuration, so the gap is NaN. Reaction: force across
-    the blade, to its left, on the second body [N].
+    `second_point` [m] is the contact of the blade, and `angle` [rad] is the blade's direction in the second body's
+    frame. Row: the velocity of the contact perpendicular to the blade, relative to the first body. A skate does not
+    constrain the configuration, so its gap is NaN. Reaction: force on the second body [N], to the left of the blade.
     """
 
     holonomic: ClassVar[bool] = False
@@ -186,18 +185,16 @@ class Skate(_JointOfTwo):
         return np.full((*np.broadcast_shapes(first.shape[:-1], second.shape[:-1]), 1), np.nan)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        """Velocity row (..., 1, 6)."""
         heading = second[..., 2] + np.asarray(self.angle)
         return direction_row(first, second, self.second_point, -np.sin(heading), np.cos(heading))
 
 
 @dataclass(frozen=True)
 class Rod(_JointOfTwo):
-    """A massless rigid rod: the distance of a point of each body stays `length` [m].
+    """A massless rigid rod: the distance between a point of each body is `length` [m].
 
-    `first_point` and `second_point` [m] are in the bodies' own frames, from the centre of mass; on the ground (None)
-    world coordinates. Row: the rate of the distance [m/s]. Reaction: force on the second body along the direction
-    from the first point to the second [N], positive where the rod pushes.
+    Row: the rate of the distance [m/s]. Reaction: force on the second body [N] in the direction from the first point to
+    the second; it is positive if the rod pushes.
     """
 
     labels: ClassVar[tuple[str, ...]] = ("along",)
@@ -212,12 +209,10 @@ class Rod(_JointOfTwo):
         return (self.length,)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Distance of the two points minus the rod's length (..., 1) [m], for the bodies' poses (..., 3)."""
         length, _ = distance(first, second, self.first_point, self.second_point)
         return (length - np.asarray(self.length))[..., None]
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        """Velocity row (..., 1, 6): columns are the first body's x, y, angle and then the second's."""
         return distance(first, second, self.first_point, self.second_point)[1][..., None, :]
 
 
@@ -225,10 +220,10 @@ class Rod(_JointOfTwo):
 class Gear(_JointOfTwo):
     """A pair of gears on fixed axles, or a belt: second angle = `ratio` times first angle + `phase` [rad].
 
-    Angles are those of the poses in the world, not wrapped; the ground's (None) is zero. The ratio of external gears is
-    negative, that of a belt or a ring gear positive. Row: omega of the second minus `ratio` times omega of the first
-    [rad/s]. Reaction: torque on the second body [N m]; -ratio times that torque acts on the first. The frame, which is
-    not in the equations, takes the rest.
+    Angles are the angles of the poses, not wrapped; the ground's (None) angle is zero. The ratio of external gears is
+    negative, the ratio of a belt or a ring gear is positive. Row: omega of the second body minus `ratio` times omega of
+    the first [rad/s]. Reaction: torque on the second body [N m]; -ratio times that torque acts on the first body. The
+    bearings carry the remaining forces, which are not in the equations.
     """
 
     labels: ClassVar[tuple[str, ...]] = ("torque",)
@@ -241,11 +236,9 @@ class Gear(_JointOfTwo):
         return (True,)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Second angle minus the prescribed one (..., 1) [rad], for the bodies' poses (..., 3)."""
         return (second[..., 2] - np.asarray(self.ratio) * first[..., 2] - np.asarray(self.phase))[..., None]
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        """Velocity row (..., 1, 6)."""
         rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
         rows[..., 0, 2] = -np.asarray(self.ratio)
         rows[..., 0, 5] = 1
@@ -254,12 +247,11 @@ class Gear(_JointOfTwo):
 
 @dataclass(frozen=True)
 class Weld(_JointOfTwo):
-    """A rigid connection: a point of each body coincide, and the second body is at `angle` [rad] to the first.
+    """A rigid connection: a point of each body coincides, and the second body has the angle `angle` [rad] to the first.
 
-    Points [m] are in the bodies' own frames, from the centre of mass; on the ground (None) world coordinates. The angle
-    is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus that of the first, x
-    then y, and omega of the second minus omega of the first. Reaction: force [N] at the point, and torque [N m], on the
-    second body.
+    The relative angle is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus
+    that of the first, x then y, and omega of the second body minus omega of the first. Reaction: force [N] at the point
+    and torque [N m] on the second body.
     """
 
     size: ClassVar[int] = 3
@@ -274,13 +266,11 @@ class Weld(_JointOfTwo):
         return (False, False, True)
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Vector from the first point to the second, and the error of the relative angle (..., 3) [m, m, rad]."""
         angle_error = second[..., 2] - first[..., 2] - np.asarray(self.angle)
         vector = apart(first, second, self.first_point, self.second_point)
         return np.concatenate([vector, angle_error[..., None]], axis=-1)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
-        """Velocity rows (..., 3, 6): columns are the first body's x, y, angle and then the second's."""
         points = point_rows(first, second, self.first_point, self.second_point)
         rows = np.zeros((*points.shape[:-2], 3, 6), dtype=points.dtype)
         rows[..., :2, :] = points
@@ -290,5 +280,5 @@ class Weld(_JointOfTwo):
 
 
 Joint = Pin | Slot | Skate | Roll | Drive | Rod | Gear | Weld | Coupling
-# Every joint class. Tables of joints in engines and tools are tested against this tuple.
+# Tests compare the tables of joints in engines and tools with this tuple.
 JOINTS: tuple[type[Joint], ...] = get_args(Joint)

@@ -18,7 +18,8 @@ from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, Curve, along
 
-# Tabulated points in half a turn. Cubics between them have an error of at most 1e-9, unless the ellipse is very flat.
+# Number of tabulated points in half a turn. Cubic interpolation between them has an error of at most 1e-9, except for
+# very flat ellipses.
 GUESSES = 257
 
 
@@ -63,7 +64,7 @@ class Ellipse(Curve):
         a, b = self.along_x, self.along_y
         if a <= b:
             part = b * ellipeinc(rest, 1 - (a / b) ** 2)
-        else:  # Carlson's form, whose terms are both positive: there is no cancellation for short arcs at a sharp end
+        else:  # Carlson's form has two positive terms, so short arcs at a sharp end have no cancellation.
             sine, cosine = np.sin(rest), np.cos(rest)
             square, excess = (a / b) ** 2, (a - b) * (a + b) / b**2
             slope = cosine**2 + square * sine**2
@@ -77,7 +78,7 @@ class Ellipse(Curve):
 
     def parameter(self, arc: ArrayLike) -> Array:
         arc = along(arc)
-        # Within half a turn, so that the error of the root does not grow with the number of turns.
+        # The root is searched within half a turn, so that its error does not grow with the number of turns.
         half_turns = np.round(arc / (self.length / 2))
         rest = arc - half_turns * (self.length / 2)
         root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, self._guess(rest), 1e-3)
@@ -85,7 +86,7 @@ class Ellipse(Curve):
 
     @cached_readonly
     def _half_turn(self) -> tuple[Array, Array, Array]:
-        """Parameters, arcs [m] and speeds [m] from -pi/2 to pi/2, for guesses."""
+        """Parameters, arcs [m] and speeds [m] from -pi/2 to pi/2, for first guesses."""
         u = np.linspace(-math.pi / 2, math.pi / 2, GUESSES)
         return u, self.arc_of(u), self.speed_of(u)
 
@@ -156,7 +157,6 @@ class Cam(Curve):
         return np.arange(1.0, count + 1), cosines, sines
 
     def _series(self, normal: Array, order: int) -> Array:
-        """The derivative of the given order of the series without its constant."""
         k, cosines, sines = self._harmonics
         phase = normal[..., None] * k + order * math.pi / 2
         return np.sum(k**order * (cosines * np.cos(phase) + sines * np.sin(phase)), axis=-1)
@@ -175,7 +175,8 @@ class Cam(Curve):
         normals = np.zeros(1)
         if np.any(np.abs(polynomial) > 0):
             roots = np.roots(polynomial)
-            # Roots on the unit circle are extrema; the others are harmless candidates.
+            # Roots on the unit circle are extrema. Additional candidates do not change the minimum and the
+            # maximum.
             normals = np.concatenate([normals, np.angle(roots[np.abs(roots) > 0])])
         bends = self.speed_of(normals)
         low, high = int(np.argmin(bends)), int(np.argmax(bends))

@@ -17,9 +17,9 @@ from reference.rolling.curves import Array, Circle, Curve, Placed, Ring
 class Contact:
     """The contact at rotations theta (...) [rad] of the body, in the ground's frame.
 
-    ground_arc, body_arc (...) [m], whose sum is constant; point (..., 2) [m] of contact; arm (..., 2) [m]: r_{O'/C},
-    from the contact to the body's origin; tangent_angle (...) [rad] of e_t, the direction in which the ground is
-    traversed; ground_curvature, body_curvature (...) [1/m].
+    ground_arc, body_arc (...) [m]: arc lengths, whose sum is constant. point (..., 2) [m]: the contact. arm (..., 2)
+    [m]: r_{O'/C}, from the contact to the body's origin. tangent_angle (...) [rad]: the angle of e_t, the direction in
+    which the ground is traversed. ground_curvature, body_curvature (...) [1/m].
     """
 
     theta: Array
@@ -48,22 +48,23 @@ class Contact:
 
     @property
     def conformality(self) -> Array:
-        """(curvature_A + curvature_B) / max(|curvature|) (...): 1 on flat ground, 0 for curves that fit each other."""
+        """(curvature_A + curvature_B) / max(|curvature|) (...): 1 for flat ground, 0 for opposite curvatures."""
         largest = np.maximum(np.abs(self.ground_curvature), np.abs(self.body_curvature))
         return (self.ground_curvature + self.body_curvature) / largest
 
 
-# Smallest conformality that is allowed. The error of the contact is proportional to the inverse of the conformality; at
-# this value about seven of a double's sixteen digits remain.
+# Smallest conformality that is allowed. The error of the contact is proportional to the inverse of the conformality. At
+# this value about seven of the sixteen digits of a double are accurate.
 NEAR_CONFORMAL = 1e-9
-# Points of a curve, once round, at which conformality and overlap are examined.
+# Number of points of a closed curve at which conformality and overlap are checked.
 SCAN = 721
 
 
 def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, end: float, side: int) -> float:
-    """The first arc of the body [m] on one side (+1, -1) of its start at which the curvatures cancel, or the `end` [m].
+    """The first arc of the body [m] in a direction `side` (+1, -1) with conformality zero, or the `end` [m].
 
-    At the start `body_arc` touches the ground at `ground_arc` [m]. `end`: the last arc of the curves, or infinity.
+    At the start, the arc `body_arc` touches the ground at `ground_arc` [m]. end: the last arc of the curves, or
+    infinity.
     """
     total = ground_arc + body_arc
     period = body.length if not math.isfinite(ground.length) else body.length + ground.length
@@ -108,7 +109,7 @@ def refuse_conformal(contact: Contact) -> None:
 
 
 def refuse_overlap(body: Curve, ground: Curve, contact: Contact) -> None:
-    """Raise InvalidMechanism unless a closed curve in a ring is entirely inside the ring."""
+    """Raise InvalidMechanism unless a closed curve in a ring is inside the ring at all points."""
     rings = [
         (hole[0], -hole[1]) if (hole := signed_circle(curve)) and hole[1] < 0 else None for curve in (ground, body)
     ]
@@ -135,7 +136,10 @@ def refuse_overlap(body: Curve, ground: Curve, contact: Contact) -> None:
 
 
 def signed_circle(curve: Curve) -> tuple[Array, float] | None:
-    """Centre (2,) [m] and radius [m] of a round curve, placed or not, negative for a hole; None for any other curve."""
+    """Centre (2,) [m] and radius [m] of a circle, placed or not; None for other curves.
+
+    The radius of a hole is negative.
+    """
     if isinstance(curve, Circle | Ring):
         return np.asarray(curve.centre, dtype=float), curve.sense * curve.radius
     if isinstance(curve, Placed) and (inner := signed_circle(curve.curve)):

@@ -114,8 +114,8 @@ class ByArc(Curve):
 
 
 def along(arc: ArrayLike) -> Array:
-    """Arcs or angles as an array of floats; InvalidMechanism for other types. NaN is allowed for root searches."""
-    if type(arc) is np.ndarray and arc.dtype == np.float64:  # the fast path of root searches
+    """Arcs or angles as an array of floats, which may be NaN in root searches; InvalidMechanism for other types."""
+    if type(arc) is np.ndarray and arc.dtype == np.float64:  # the fast path, used in root searches
         return arc
     return validate("curve", "the place", arc, Numbers)
 
@@ -176,7 +176,7 @@ class Placed(Curve):
 
 
 def straight_has_no_inverse(owner: str) -> InvalidMechanism:
-    """The error for a search of a direction on a straight boundary."""
+    """The error for the search of a tangent angle on a straight boundary."""
     return InvalidMechanism(
         f"{owner}: it is straight, so its direction does not determine a point; use a curved boundary"
     )
@@ -245,7 +245,7 @@ class Side(ByArc):
 
 @dataclass(frozen=True)
 class _Round(ByArc):
-    """Base of disc and hole: a circle of `radius` [m] about `centre` [m], traversed to the left or the right."""
+    """Base of disc and hole: a circle of `radius` [m] about `centre` [m]."""
 
     radius: Positive
     centre: Vector = (0.0, 0.0)

@@ -1,7 +1,4 @@
-"""One rigid curve rolling on another: contact, pose, velocity (18.66) and acceleration as functions of the rotation.
-
-Contacts at which rolling is not possible are refused: the curves cut, they fit each other, or one is outside a ring.
-"""
+"""One rigid curve rolling on another: pose, velocity (18.66) and acceleration as functions of the rotation."""
 
 from __future__ import annotations
 
@@ -25,15 +22,14 @@ Place = Annotated[ArrayLike, of_shape("...", 2)]
 
 @dataclass(frozen=True)
 class Rolling(Valid):
-    """The curve `body` rolls without slip on the fixed curve `ground`; convention: `reference.rolling.curves`.
+    """The curve `body` rolls without slip on the fixed curve `ground`; for conventions see `reference.rolling.curves`.
 
-    At the rotation `theta` [rad] the contact is at `ground_arc` and `body_arc` [m]. `Rolling.at_angle` and
-    `Rolling.at_arcs` compute one of these numbers from the other two. Rotations are not wrapped.
+    At the rotation `theta` [rad], which is not wrapped, the contact has the arc lengths `ground_arc` and `body_arc`
+    [m]. `Rolling.at_angle` and `Rolling.at_arcs` compute the third number from the other two.
 
-    Raises InvalidMechanism, with the position, if the tangents don't match at the start, if curvature_A + curvature_B
-    is below `NEAR_CONFORMAL` of the larger curvature (negative: the curves would cut into each other), if an arc is not
-    on a curve, or if a hole is too small for the curve in it. A second contact of curves that are neither convex nor a
-    ring is not noticed.
+    Raises InvalidMechanism if the tangents at the start differ, if curvature_A + curvature_B is below `NEAR_CONFORMAL`
+    of the larger curvature, if an arc is not on its curve, or if a closed curve is not inside its ring. A second
+    contact of curves that are neither convex nor a ring is not detected.
     """
 
     body: Curve
@@ -59,14 +55,16 @@ class Rolling(Valid):
     @classmethod
     @validated
     def at_angle(cls, body: Curve, ground: Curve, theta: float = 0.0, ground_arc: float = 0.0) -> Rolling:
-        """Start at a rotation [rad] of the body, touching the ground at an arc [m]; the body must not be straight."""
+        """Start at a rotation [rad] of the body and a contact at an arc [m] of the ground; the body must not be
+        straight.
+        """
         wanted = math.remainder(float(ground.angle(ground_arc)) + math.pi - theta, 2 * math.pi)
         return cls(body, ground, theta, ground_arc, float(body.arc(wanted)))
 
     @classmethod
     @validated
     def at_arcs(cls, body: Curve, ground: Curve, ground_arc: float = 0.0, body_arc: float = 0.0) -> Rolling:
-        """Start with a contact at these arcs [m]; of the possible rotations the one within half a turn is used."""
+        """Start with a contact at these arcs [m]; the rotation is between -pi and pi."""
         theta = math.remainder(float(ground.angle(ground_arc) + math.pi - body.angle(body_arc)), 2 * math.pi)
         return cls(body, ground, theta, ground_arc, body_arc)
 
@@ -76,18 +74,18 @@ class Rolling(Valid):
 
     @cached_property
     def _start_angles(self) -> tuple[float, float]:
-        """Unwrapped tangent angles of ground and body at the start; only their changes matter."""
+        """Tangent angles of ground and body at the start. They are not wrapped, and only their changes are used."""
         return float(self.ground.angle(self.ground_arc)), float(self.body.angle_of(self._body_start))
 
     @cached_property
     def _apart_everywhere(self) -> bool:
-        """Whether the ranges of curvature exclude that the curves fit or cut anywhere."""
+        """Whether curvature_A + curvature_B is not negative for any two points of the curves."""
         return self.ground.curvature_range[0] + self.body.curvature_range[0] >= 0
 
     def _ground_arc(self, body_arc: Array) -> Array:
-        """The arc of the ground (...) [m] that touches the body at `body_arc` (...) [m].
+        """The arc of the ground (...) [m] in contact with the body at `body_arc` (...) [m].
 
-        An arc within rounding of an end of the ground is set to that end.
+        An arc beyond or before an end of the ground by a rounding error is set to the end.
         """
         arc = self.ground_arc + (self.body_arc - body_arc)
         rounding = 4 * np.finfo(float).eps * (abs(self.ground_arc) + abs(self.body_arc))
@@ -96,7 +94,7 @@ class Rolling(Valid):
         return arc
 
     def _rotation(self, body_parameter: Array) -> tuple[Array, Array]:
-        """-(theta - start) (...) and its slope, by the body's parameter; it increases wherever rolling is possible."""
+        """-(theta - start) (...) and its derivative by the body's parameter, positive if rolling is possible."""
         ground = self.ground.parameter(self._ground_arc(self.body.arc_of(body_parameter)))
         ground_start, body_start = self._start_angles
         turned = (self.ground.angle_of(ground) - ground_start) - (self.body.angle_of(body_parameter) - body_start)
@@ -105,7 +103,7 @@ class Rolling(Valid):
 
     @cached_property
     def _parameter_limits(self) -> tuple[float, float]:
-        """The body's parameters between which rolling is possible."""
+        """The range of the body's parameter in which rolling is possible."""
         low, high = self.body.limits
         ground_low, ground_high = self.ground.limits
         total = self.ground_arc + self.body_arc
@@ -118,7 +116,7 @@ class Rolling(Valid):
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Rotations [rad] between which the body can roll: infinite, or those at which curves fit or a curve ends."""
+        """The range of rotations [rad] in which the body can roll, which may be infinite."""
         low, high = self._parameter_limits
         with np.errstate(invalid="ignore"):
             later = self.theta - float(self._rotation(np.asarray(low))[0]) if math.isfinite(low) else math.inf
@@ -132,7 +130,8 @@ class Rolling(Valid):
         circles = signed_circle(self.ground), signed_circle(self.body)
         if circles[0] is not None and circles[1] is not None:
             ground, body = circles[0][1], circles[1][1]
-            # From the sum of the signed radii, since angles cancel for a disc in a hole of nearly its size.
+            # The sum of the signed radii is used, since angles cancel for a disc in a hole of nearly its
+            # size.
             return self._body_start - rotation * (body * (ground / (ground + body)))
         low, high = self.limits
         slack = 1e-12 * (1 + abs(self.theta))
@@ -149,7 +148,7 @@ class Rolling(Valid):
 
     @cached_property
     def _mean_slope(self) -> float:
-        """Mean decrease of the body's parameter per radian of rotation, for the first guess of the search."""
+        """Mean decrease of the body's parameter per radian of rotation, used as a first guess."""
 
         def mean(curve: Curve) -> float:
             low, high = curve.curvature_range
@@ -180,7 +179,6 @@ class Rolling(Valid):
 
     @validated
     def contact(self, theta: ArrayLike) -> Contact:
-        """The contact on both curves at rotations theta (...) [rad]."""
         theta = np.asarray(theta, dtype=float)
         contact = self._contact_at(theta, self._body_parameter(theta))
         refuse_conformal(contact)
@@ -200,7 +198,7 @@ class Rolling(Valid):
 
     @validated
     def position(self, theta: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
-        """Positions (..., 2) [m] of a point of the body, given in its own frame [m]: the roulette."""
+        """Positions (..., 2) [m] of a point of the body, which is given in the body's frame [m]: the roulette."""
         contact = self.contact(theta)
         return contact.point + self._arm(contact, point)
 
@@ -213,12 +211,12 @@ class Rolling(Valid):
     def pinned_acceleration(
         self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
     ) -> Array:
-        """alpha x r - omega^2 r (..., 2) [m/s^2]: the acceleration as if the body were pinned at C."""
+        """alpha x r - omega^2 r (..., 2) [m/s^2]: the acceleration of a body that is pinned at the contact."""
         return rotation_acceleration(rate, angular_acceleration, self._arm(self.contact(theta), point))
 
     @validated
     def rolling_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
-        """omega^2 / (curvature_A + curvature_B) e_n (..., 2) [m/s^2]: the additional acceleration of all points."""
+        """omega^2 / (curvature_A + curvature_B) e_n (..., 2) [m/s^2], which rolling adds at every point."""
         contact = self.contact(theta)
         return (np.asarray(rate) ** 2 * contact.rate)[..., None] * contact.normal
 

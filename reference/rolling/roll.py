@@ -32,7 +32,7 @@ class Roll(BetweenTwo, JointElement):
 
     size: ClassVar[int] = 2
     labels: ClassVar[tuple[str, ...]] = ("tangent", "normal")
-    stackable: ClassVar[bool] = False  # curves don't stack as numbers do
+    stackable: ClassVar[bool] = False  # curves can't be stacked in an array
 
     rolling: Rolling
 
@@ -69,7 +69,7 @@ class Roll(BetweenTwo, JointElement):
         return contact.point + advance, contact.arm + rotation_velocity(step, contact.arm) - advance, angle
 
     def _contact_at(self, theta: NDArray[Any]) -> Contact:
-        """The contact at rotations (...). The last one is cached, since gap and rows need the same."""
+        """The contact at rotations (...). The last result is cached, since gap and rows use the same contact."""
         if not (self._last and np.array_equal(self._last[0][0], theta)):
             self._last[:] = [(theta.copy(), self.rolling.contact(theta))]
         return self._last[0][1]

@@ -1,9 +1,9 @@
-"""The regression gate: each row is compared with the same cell of a baseline, the errors.csv of an earlier run.
+"""The regression gate, which compares each row with the same cell of a baseline: the errors.csv of an earlier run.
 
 The effect of rounding is measured by runs of a mechanism whose numbers differ by one rounding: masses, inertias,
-gravity, and the points where joints and forces act. Changing the start alone is not enough: in a prescribed motion, or
-after a projection, no result depends on its last bit. The order of the bodies is not changed, since this makes another
-tree of joints in MuJoCo and another order of solver iterations in pymunk, with other errors.
+gravity, and the points of joints and forces. A change of the start alone does not suffice, since a prescribed or
+projected motion does not depend on its last bit. The order of the bodies is not changed: another order changes MuJoCo's
+tree of joints and the order of pymunk's solver iterations, and thus the errors.
 """
 
 from __future__ import annotations
@@ -31,19 +31,21 @@ from reports.write.provenance import still_installed
 
 # (scene, method, samples, steps per sample): identifies a cell in all runs, even if its settings have changed.
 Identity = tuple[str, str, int, int]
-IDENTITY = ("scene", "engine", "variant", "samples", "every")  # its columns
+IDENTITY = ("scene", "engine", "variant", "samples", "every")  # columns of errors.csv that define a cell
 TIMINGS_FILE = "timings.csv"  # beside errors.csv; its comments hold the versions (`reports.write.provenance.versions`)
-MOST_FILES_NAMED = 5  # in a sentence
+MOST_FILES_NAMED = 5  # number of files that a message names
 
 
 class BadBaseline(ValueError):
-    """A file that is not a valid errors.csv; the message is one line with the reason."""
+    """A baseline file is not a valid errors.csv; the message is one line with the reason."""
 
 
 @dataclass(frozen=True)
 class Old:
-    """A cell of a baseline. reaction_rows: constraint rows with a reported reaction. cpu: CPU seconds per simulated
-    second, NaN if not timed."""
+    """A cell of a baseline.
+
+    reaction_rows: constraint rows with a reported reaction. cpu: CPU seconds per simulated second, NaN if not timed.
+    """
 
     outcome: Outcome
     errors: Mapping[str, float]
@@ -63,15 +65,15 @@ class Baseline:
 
     @property
     def same_versions(self) -> bool:
-        """Whether all packages have the versions of the baseline, or these are unknown.
+        """Whether the installed packages have the versions of the baseline, or these versions are unknown.
 
-        Then rows are checked by `change`, otherwise by `drift`.
+        If so, rows are checked by `change`, otherwise by `drift`.
         """
         return self.versions == "" or still_installed(self.versions)
 
 
 def mixed(baseline: Baseline) -> str:
-    """One sentence if the baseline and the pages in its folder are not of one report; else, or without pages, empty."""
+    """A sentence if the baseline and the pages in its folder belong to different reports, else an empty string."""
     if baseline.folder is None or not (baseline.folder / "index.md").exists():
         return ""
     others = not_as_written(baseline.folder)
@@ -85,12 +87,11 @@ def mixed(baseline: Baseline) -> str:
 
 
 def identity(row: Measurement) -> Identity:
-    """The identity of a row's cell."""
     return row.scene, row.method, row.samples, row.every
 
 
 def _identity(row: Mapping[str, str]) -> Identity:
-    """The identity of a row of a file. Raises ValueError or TypeError for a damaged row."""
+    """The identity of the cell of a CSV row. Raises ValueError or TypeError for a damaged row."""
     return row["scene"], f"{row['engine']} {row['variant']}", int(row["samples"]), int(row["every"])
 
 
@@ -136,7 +137,7 @@ def read_baseline(path: Path) -> Baseline:
     return Baseline(cells, versions, path.parent, tuple(name for name in names if name not in columns))
 
 
-SEEDS = (1, 2, 3)  # of the changes by one rounding
+SEEDS = (1, 2, 3)  # seeds of the changes by one rounding
 EPSILON = float(np.finfo(float).eps)
 
 Part = TypeVar("Part")
@@ -158,32 +159,31 @@ class Altered(EngineWrapper):
         return self.engine.variant
 
     def stepped(self, mechanism: Mechanism) -> Engine:
-        """This engine, since the one inside builds a changed mechanism."""
+        """This engine, since it builds the changed mechanism."""
         return self
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """The instants of the inner engine with a model of the changed mechanism, beside the unchanged law."""
+        """The times at which the engine evaluates the model of the changed mechanism, with the unchanged scene."""
         return self.engine.stepped(mechanism).instants(mechanism, dt, steps, self.change(mechanism))
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:
-        """Build the changed mechanism. Errors of the change and of the engine are raised unchanged."""
+        """Build the changed mechanism. Errors of the change and of the engine are raised without a change."""
         return self.engine.build(self.change(mechanism), dt)
 
 
 @dataclass(frozen=True)
 class Nudge:
-    """Changes masses, inertias and all vectors of a mechanism by -1, 0 or 1 rounding, drawn from the seed.
+    """Changes masses, inertias and vectors of a mechanism by -1, 0 or 1 rounding, drawn from the seed.
 
     Scalars of joints and forces (a gear's ratio, an angle) are not changed, since engines treat values such as 1
-    specially. Zeros stay zero.
+    specially. Zeros remain zero.
     """
 
     seed: int
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
-        """The changed mechanism."""
         random = np.random.default_rng([self.seed, zlib.crc32(repr(mechanism.row_names).encode())])
         return replace(
             mechanism,
@@ -195,7 +195,7 @@ class Nudge:
 
 
 def _nudge_part(part: Part, random: np.random.Generator, scalars: tuple[str, ...] = ()) -> Part:
-    """A body, joint or force with its vectors, and these scalars, changed by up to one rounding."""
+    """A body, joint or force with its vectors and these scalars changed by at most one rounding."""
     changed: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         value = getattr(part, field.name)
@@ -212,17 +212,17 @@ def _rounded(values: tuple[Any, ...], random: np.random.Generator) -> Any:
 
 
 def nudged_cells(cell: Cell) -> tuple[Cell, ...]:
-    """The cell with its mechanism changed by one rounding, once per seed."""
+    """One cell for each seed, with its mechanism changed by one rounding."""
     return tuple(replace(cell, engine=Altered(cell.engine, Nudge(seed))) for seed in SEEDS)
 
 
-# With other versions an error may become this many times as large, for example where two errors no longer cancel.
+# Largest allowed factor on an error with other versions: for example, two errors may no longer cancel.
 WORSE = 3.0
-# Standard deviation of the median of n normal draws, over that of one draw, times sqrt(n).
+# sqrt(n) times the standard deviation of the median of n normal samples, divided by that of one sample.
 SCATTER = 1.2533
-# Factor on the differences of the few nudged runs: the largest effect of rounding is larger than theirs.
+# Factor on the differences of the nudged runs, which are too few to contain the largest effect of rounding.
 NUDGE_ROOM = 10.0
-# Factor of the CPU time above which a remark is made: neither another machine nor the load explains as much.
+# Factor of the CPU time above which a remark is made. Other machines and other load cause smaller factors.
 DEAR = 10.0
 
 
@@ -250,9 +250,9 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
 
 
 def _has_numbers(now: str, before: str) -> bool:
-    """Whether runs with these outcomes must have the same numbers: both are comparable, or both unresolved.
+    """Whether runs with these outcomes must have equal numbers: both are comparable, or both are unresolved.
 
-    The numbers of torn or lost runs are arbitrary.
+    The numbers of other runs are arbitrary.
     """
     if now == before == Outcome.UNRESOLVED:
         return True
@@ -260,10 +260,10 @@ def _has_numbers(now: str, before: str) -> bool:
 
 
 def drift(row: Measurement, old: Old) -> tuple[Check, ...]:
-    """The checks of a row with other versions than the baseline's.
+    """The checks of a row with versions other than the baseline's.
 
-    No error may be more than WORSE times as large or become NaN. The outcome must be the same, or comparable: this
-    improvement is reported by `describe_improvements`.
+    No error may exceed WORSE times the baseline's error, or become NaN. The outcome must be equal, or improve to
+    comparable; `describe_improvements` reports an improvement.
     """
     if not (Outcome(row.outcome).comparable and old.outcome.comparable):
         return (_outcome(row, old, row.outcome == old.outcome or Outcome(row.outcome).comparable),)
@@ -300,12 +300,12 @@ def describe_improvements(row: Measurement, old: Old) -> tuple[str, ...]:
 
 
 def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
-    """One check for each method and quantity: whether errors grew with other versions over all scenes.
+    """One check for each method and quantity: whether errors have grown over all scenes with other versions.
 
-    In one scene an error may become WORSE times as large or small by chance. For n scenes the median of the logarithms
-    of these factors scatters SCATTER / sqrt(n) times as much, so the bound of the median factor is WORSE to this power.
-    The cells of a scene are not independent, so each scene counts once, with the median of its factors. Errors below
-    rounding have the factor 1.
+    In one scene an error may change by a factor of WORSE by chance. The median of the logarithms of the factors of n
+    scenes has a scatter that is SCATTER / sqrt(n) times as large, so the bound is WORSE to this power. The cells of a
+    scene are not independent, so each scene contributes the median of its factors. Errors below rounding have the
+    factor 1.
     """
     factors: dict[tuple[str, str], dict[str, list[float]]] = {}
     for row, old in pairs:
@@ -326,9 +326,9 @@ def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
 
 
 def cost(pairs: Iterable[tuple[Measurement, Old]]) -> float:
-    """The CPU time over the baseline's, summed over the cells that both have timed; NaN without such a cell.
+    """The CPU time divided by the baseline's, summed over the cells for which both are known; NaN without such a cell.
 
-    The sum is that of the longest runs, since a run of a millisecond cannot be timed well.
+    The sum is dominated by the longest runs, since a run of a millisecond cannot be timed well.
     """
     timed = [
         (row.cpu, old.cpu)

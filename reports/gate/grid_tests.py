@@ -1,8 +1,8 @@
-"""Every scene of every page in every method: below what theory promises, and equal to the baseline's numbers.
+"""Tests of every scene of every page with every method against the bounds of theory and the numbers of the baseline.
 
 The cells are those of the report's grid. `reports.gate.theory` computes the bounds, `reports.gate.change` compares with
-the baseline. The tests are part of the package, so that an installed copy runs them in any folder with
-`pytest -m crosscheck` (planar_crosscheck_pytest.py).
+the baseline. The tests are in the package, so that an installed copy can run them in any folder with `pytest -m
+crosscheck` (planar_crosscheck_pytest.py).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ GRID = cases(PAGES)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """The grid, with the engines that `--engine` names by a reference."""
+    """Parametrise the tests by the grid, including the engines that `--engine` names by a reference."""
     if metafunc.function in (
         test_a_method_is_as_exact_as_theory_promises,
         test_a_method_gives_the_numbers_of_the_baseline,
@@ -31,7 +31,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
-    """The verdict of a case; a skip where its engine is an extra that is not installed."""
+    """The verdict of a case; the test is skipped if the engine is an extra that is not installed."""
     if absent := case.engine.missing:
         pytest.skip(absent)
     return verdicts[case]
@@ -41,7 +41,7 @@ def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
 def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, CaseVerdict], case: Case) -> None:
     verdict = verdict_of(verdicts, case)
     if verdict.rows[-1].outcome == Outcome.UNSUPPORTED:
-        # It is unsupported at every step, with a reason.
+        # The case is unsupported at every step, for this reason.
         assert all(row.outcome == Outcome.UNSUPPORTED and row.sentence for row in verdict.rows)
         assert not case.known
         return
@@ -73,5 +73,5 @@ def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.Fix
 
 
 def absence(method: str) -> str:
-    """How to install the extra of a method; empty if it is installed, or the method needs no extra."""
+    """How to install the extra of a method; empty if the method is installed or needs no extra."""
     return next((sentence for name, sentence in registry.ABSENT.items() if method.startswith(f"{name} ")), "")

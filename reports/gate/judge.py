@@ -38,10 +38,9 @@ from reports.model.quantities import QUANTITIES
 Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
-# Constants of `refined`.
-PARTS = 10  # of the time between two samples
-SAME = 1e-6  # largest change by a third of the step; a tenth of it changes no error of the N-four-bars by a tenth
-MOST_TRIED = 200_000  # steps until it gives up: half a minute for 60 rows
+PARTS = 10  # number of intervals of `refined` between two samples
+SAME = 1e-6  # largest change in `refined` by a third of the step; for a tenth of it N-four-bars' errors change < 10 %
+MOST_TRIED = 200_000  # steps after which `refined` returns None: half a minute for 60 rows
 
 TABLEAUS: dict[int, Tableau] = {
     1: Tableau(np.zeros((1, 1)), np.array([1.0]), np.zeros(1)),
@@ -51,9 +50,9 @@ TABLEAUS: dict[int, Tableau] = {
 
 
 def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
-    """Which rows are regularised (rows,): the declared ones, but a drive only if its row has a compliance.
+    """The mask (rows,) of the regularised rows; a drive is regularised only if its row has a compliance.
 
-    Without a compliance a drive prescribes its rate alone, and no spring acts on its angle.
+    Without a compliance a drive prescribes only its rate, and its angle has no spring.
     """
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
@@ -61,7 +60,9 @@ def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
 def dynamics_of(
     mechanism: Mechanism, soft: Regularisation | None = None, least: float = LEAST_INVERSE_INERTIA
 ) -> Dynamics:
-    """A mechanism with ideal joints, or with soft ones: see `giving_way`; the smallest reactions of dependent rows."""
+    """The dynamics of a mechanism with ideal or regularised joints; reactions of dependent rows are the minimum-norm
+    ones.
+    """
     gives = None if soft is None else giving_way(mechanism, soft)
     return Dynamics(mechanism, soft, gives, least, RANK_TOLERANCE)
 
@@ -69,7 +70,7 @@ def dynamics_of(
 def integrate(
     scene: Scene, order: int, every: int, soft: Regularisation | None = None, project: bool = False
 ) -> Trajectory:
-    """The scene's motion by Runge and Kutta's method of this order, `every` steps a sample."""
+    """The scene's motion by a Runge-Kutta method of this order with `every` steps per sample."""
     return stepped(scene.mechanism(), _samples(scene), scene.spacing, order, every, soft, project)
 
 
@@ -88,7 +89,7 @@ def stepped(
 
 
 def _samples(scene: Scene) -> int:
-    """The number of samples up to the end of the comparable time."""
+    """The number of samples until the end of the comparison."""
     return max(1, math.floor(min(scene.duration, scene.comparable_until) / scene.spacing * (1 + 1e-12)))
 
 
@@ -101,9 +102,10 @@ def _compiled(
     soft: Regularisation | None,
     project: bool,
 ) -> Trajectory | None:
-    """As `in_numpy`; None if rows are dependent, the motion is lost, or regularised joints have to be projected.
+    """The motion by compiled steps; None if rows are dependent, the motion is lost, or regularised joints are
+    projected.
 
-    Regularised rows may be dependent at the start, since their compliances make the system regular.
+    Regularised rows may be dependent, since their compliances make the system regular.
     """
     machine = _machine(mechanism, soft)
     if machine is None or (project if soft is not None else machine.has_dependent_rows):
@@ -127,11 +129,11 @@ def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel
 
 
 def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisation) -> Trajectory | None:
-    """A regularised motion by the method of order 4 with step control, samples `spacing` [s] apart.
+    """A regularised motion by the method of order 4 with step control, at samples `spacing` [s] apart.
 
-    Each of the PARTS between two samples is repeated with a third of the step until it changes by less than SAME,
-    relative to the mechanism's length and speed. So it passes singular positions, where spring forces grow with the
-    inverse of a singular value. None without numba, or after MOST_TRIED steps.
+    Each of the PARTS intervals between two samples is repeated with a third of the step until the result changes by
+    less than SAME, relative to the mechanism's length and speed. So the integration passes singular positions, where
+    spring forces are large. None without numba, or after MOST_TRIED steps.
     """
     machine = _machine(mechanism, soft)
     if machine is None:
@@ -204,17 +206,16 @@ def _truth(scene: Scene, instants: bytes) -> Trajectory:
 def errors(
     scene: Scene, order: int, every: int, soft: Regularisation | None = None, project: bool = False
 ) -> Mapping[str, float]:
-    """Largest errors of the judge's own run, by the name of the quantity; infinite ones where it failed."""
+    """Largest errors of the judge's run by quantity; infinite if the run failed."""
     return _largest_errors(scene, lambda: integrate(scene, order, every, soft, project))
 
 
 def errors_as_soft(scene: Scene, soft: Regularisation) -> Mapping[str, float]:
-    """Largest errors of `refined` with a method's own regularisation, by quantity; infinite if it gives no motion."""
+    """Largest errors of `refined` with a method's regularisation, by quantity; infinite if `refined` returns None."""
     return _largest_errors(scene, lambda: refined(scene.mechanism(), _samples(scene), scene.spacing, soft))
 
 
 def _largest_errors(scene: Scene, run: Callable[[], Trajectory | None]) -> Mapping[str, float]:
-    """Largest errors of a run of the scene."""
     mechanism = scene.mechanism()
     try:
         with np.errstate(all="ignore"):

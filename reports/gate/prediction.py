@@ -26,28 +26,32 @@ from reports.model.page import Page
 from reports.model.quantities import QUANTITY
 from reports.model.tasks import Answer, Task, Values
 
-# (which rows are regularised, whether the velocity term of their acceleration is complete): one run of the judge each.
+# A kind of regularisation: a mask of the regularised rows, and whether the velocity term of their acceleration is
+# complete. The judge makes one run for each kind.
 SoftKind = tuple[tuple[bool, ...], bool]
 
 # Regularisation of the judge's runs: MuJoCo's default with a smaller compliance. Errors are proportional to the
 # compliance and to 1 / stiffness [s^2], or to 1 / damping [s] for rows without a gap.
 STIFFNESS, DAMPING, COMPLIANCE = 1 / 0.02**2, 2 / 0.02, 0.01
 
-REFINEMENTS = (1, 3)  # steps per sample of the judge; the first at which its order 2 is within REACH is used
+REFINEMENTS = (
+    1,
+    3,
+)  # steps per sample of the judge: the first one with an error of order 2 within REACH is used
 REACH = 0.1  # rad
-MOST_STEPS = 20_000  # of a run of the judge; longer scenes are bounded by the coarser steps of each method alone
+MOST_STEPS = 20_000  # steps of a run of the judge; in longer scenes only the coarser steps of each method give a bound
 DIFFERENCES = 1000  # intervals of the true motion for its finite differences
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """Errors by quantity from which those of any convergence order and regularisation in a scene are scaled.
+    """Errors of a scene by quantity, which are scaled to any convergence order and regularisation.
 
-    second, fourth: errors of the methods of order 2 and 4 at `step` [s]. length: of the mechanism [m]. speed,
-    acceleration: largest of the true motion [m/s, m/s^2]. changing: first and second derivative of the reactions over
-    their largest value [1/s, 1/s^2]. soft: errors with STIFFNESS, DAMPING and COMPLIANCE. holonomic: rows that limit
-    positions. prescribed: whether the drives determine the whole motion. lag: then the errors of velocities and
-    reactions of an earlier instant, per second of delay.
+    second, fourth: errors of the methods of order 2 and 4 at `step` [s]. length: the mechanism's length [m]. speed,
+    acceleration: largest values of the reference motion [m/s, m/s^2]. changing: first and second derivative of the
+    reactions divided by their largest value [1/s, 1/s^2]. soft: errors with STIFFNESS, DAMPING and COMPLIANCE.
+    holonomic: mask of the rows that constrain positions. prescribed: whether the drives determine the motion. lag: for
+    a prescribed motion, the errors of velocities and reactions at an earlier time, per second of delay.
     """
 
     step: float
@@ -63,13 +67,13 @@ class Prediction:
     lag: Mapping[str, float] = field(default_factory=dict)
 
     def is_defined(self, quantity: str) -> bool:
-        """Whether the scene has this quantity: there is no gap without a joint that limits a position."""
+        """Whether the quantity exists in the scene: a gap needs a joint that constrains positions."""
         return not math.isnan(self.second[quantity]) and (quantity != "gap" or any(self.holonomic))
 
     def error(self, quantity: str, order: float, step: float) -> float:
-        """A (step / tau)^order; infinite where the runs of order 2 and 4 failed, NaN if the quantity is not defined.
+        """A (step / tau)^order; infinite if the runs of order 2 and 4 failed, NaN if the quantity does not exist.
 
-        An error of the pose causes an error of the velocity, at the rate speed / length of the motion; an error of the
+        An error of the pose causes an error of the velocity, at the rate speed / length of the motion. An error of the
         velocity may be a slip (`Quantity.follows`).
         """
         error = self._power(quantity, order, step)
@@ -93,11 +97,11 @@ class Prediction:
         return second * ratio ** ((order - 2) / 2) * (step / self.step) ** order
 
     def softness_error(self, quantity: str, softness: Regularisation | None) -> float:
-        """The error that this regularisation causes."""
+        """The error caused by this regularisation."""
         return scaled_softness_error(self.soft, quantity, softness, self.holonomic)
 
     def gap_closing_error(self, quantity: str, gap: float, softness: Regularisation | None) -> float:
-        """The error while a spring closes a gap [m] of the discretisation, with the velocity gap * damping."""
+        """The error while a spring closes a discretisation gap [m] with the velocity gap * damping."""
         if softness is None or not softness.complete or math.isnan(gap):
             return 0.0
         if quantity == "reaction":
@@ -105,9 +109,10 @@ class Prediction:
         return self._error_of_slip(quantity, gap * softness.damping)
 
     def spring_transient_error(self, quantity: str, softness: Regularisation | None) -> float:
-        """The error while the springs of a method take up their load.
+        """The error during the transient of a method's springs at the start.
 
-        A critically damped spring with the final gap g [m] and stiffness k [1/s^2] opens with at most g sqrt(k) / e.
+        A critically damped spring with the final gap g [m] and stiffness k [1/s^2] opens with at most the speed g
+        sqrt(k) / e.
         """
         if softness is None or softness.compliance == 0:
             return 0.0
@@ -126,7 +131,7 @@ class Prediction:
         return self.changing[order > 1] * step ** min(order, 2)
 
     def largest_comparable(self, quantity: str) -> float:
-        """The error above which a run is not comparable: for velocities, energy and reactions their largest value."""
+        """The error above which a run is not comparable; the largest value for velocities, energy and reactions."""
         scales = {"rad": 1.0, "m": self.length, "rad/s": self.speed / self.length, "m/s": self.speed}
         facts = QUANTITY[quantity]
         return facts.largest * scales.get(facts.unit, 1.0)
@@ -217,7 +222,7 @@ def _sampled(scene: Scene) -> Trajectory:
 
 
 def _lag_errors(scene: Scene) -> Mapping[str, float]:
-    """By quantity the error of true velocities and reactions that are one interval late, per second of delay."""
+    """Errors of reference velocities and reactions that are one interval late, by quantity, per second of delay."""
     mechanism, truth = scene.mechanism(), _sampled(scene)
     names = ("t", "pose", "twist", "reaction")
     now, before = (
@@ -229,7 +234,6 @@ def _lag_errors(scene: Scene) -> Mapping[str, float]:
 
 
 def _motion_scales(scene: Scene) -> tuple[float, float, tuple[float, float]]:
-    """`speed`, `acceleration` and `changing` of a Prediction."""
     mechanism = scene.mechanism()
     truth, length = _sampled(scene), mechanism.length_scale
     dt = truth.t[1]
@@ -249,7 +253,7 @@ def unit_softness_errors(scene: Scene, rows: tuple[bool, ...], complete: bool) -
     scaled: Mapping[str, float] = dict.fromkeys(QUANTITY_NAMES, math.inf)
     if scene.samples * every > MOST_STEPS:
         return scaled
-    for divisor in (1.0, 1e3, 1e6):  # the next one where the motion is lost
+    for divisor in (1.0, 1e3, 1e6):  # the next one if the motion is lost
         soft = Regularisation(STIFFNESS, DAMPING, COMPLIANCE / divisor, rows, complete)
         scaled = {name: value * divisor for name, value in errors(scene, 4, every, soft).items()}
         if not complete or scaled["angle"] / divisor <= SATURATED:
@@ -258,15 +262,17 @@ def unit_softness_errors(scene: Scene, rows: tuple[bool, ...], complete: bool) -
 
 
 def _order_errors(scene: Scene, order: int, every: int) -> Mapping[str, float]:
-    """The larger errors of the runs with and without projection; a run with an angle error above SATURATED is left out
-    if the other one is below."""
+    """The larger errors of the runs with and without projection.
+
+    If only one run has an angle error of at most SATURATED, only this run is used.
+    """
     runs = [errors(scene, order, every, project=project) for project in (False, True)]
     followed = [run for run in runs if run["angle"] <= SATURATED] or runs
     return _larger_finite(followed[0], followed[-1])
 
 
-MOST_BODIES = 20  # of a scene whose pages need the judge: for more bodies it takes minutes, and the gate alone runs it
-STAGE = 1e-3  # s, about: one Runge-Kutta stage of the judge for a few bodies; a step has four
+MOST_BODIES = 20  # bodies, at most, of a scene for which pages use the judge: with more bodies a run takes minutes
+STAGE = 1e-3  # s, approximate time of one Runge-Kutta stage of the judge for a few bodies
 
 
 @dataclass(frozen=True)
@@ -301,7 +307,7 @@ def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...
 
 
 def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine, quantity: str, step: float) -> float:
-    """The error that the engine's declared regularisation causes at this step [s]; 0 without one, NaN if not known."""
+    """The error caused by the engine's declared regularisation at this step [s]; 0 without one, NaN if unknown."""
     mechanism = mechanism_of(scene)
     softness = engine.regularisation(mechanism, step)
     soft: dict[SoftKind, dict[str, float]] = {}
@@ -317,7 +323,9 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
 
 
 def all_tasks(page: Page) -> tuple[Task, ...]:
-    """The tasks of a page: its own, those of its experiments, and the judge's runs for its engines; each once."""
+    """The tasks of a page without repetition: its own, those of its experiments, and the judge's runs for its
+    engines.
+    """
     experiments = [task for failure in page.failures for task in failure.tasks]
     declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
     return tuple(dict.fromkeys([*page.tasks, *experiments, *declared]))

@@ -27,7 +27,7 @@ HEADER = ("scene", "method", "step [s]", "error", "bound", "nearest check", "how
 
 
 def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
-    """A line a case under HEADER: the angle's error and bound, and the check that came nearest to its own bound."""
+    """One line per case under HEADER: the angle's error and bound, and the check closest to its bound."""
     out = []
     for verdict in verdicts:
         finest, worst = verdict.rows[-1], verdict.worst
@@ -71,7 +71,7 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
 
 
 def vacuous_checks(verdicts: Iterable[CaseVerdict]) -> list[str]:
-    """Sentences about the checks of theory that cannot fail: their number, and the number for each reason."""
+    """Sentences with the number of theory checks that cannot fail, and the number for each reason."""
     checks = [check for verdict in verdicts for check in verdict.theory]
     vacuous = count_vacuous(checks)
     out = [f"{len(checks)} checks of theory; {vacuous.total()} of them can't fail."]
@@ -112,7 +112,7 @@ BASELINE = Path(__file__).parents[1] / "results" / "errors.csv"
 VERDICTS = pytest.StashKey[dict[Case, CaseVerdict]]()
 KNOWN = pytest.StashKey[Baseline]()
 GIVEN = pytest.StashKey[tuple[Engine, ...]]()  # engines that `--engine` names by a reference
-WANTED = pytest.StashKey[tuple[str, ...]]()  # names and methods
+WANTED = pytest.StashKey[tuple[str, ...]]()  # names of engines and methods that `--engine` selects
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -130,7 +130,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Read the baseline and check the options. Raises UsageError, one line, before anything is run."""
+    """Read the baseline and check the options before any run. Raises UsageError with one line."""
     if sentence := registry.mislabelled():
         raise pytest.UsageError(sentence)
     try:
@@ -148,7 +148,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]:
-    """(the engines that references name, the names and methods that are wanted). Raises UsageError."""
+    """The engines given by references, and the selected names and methods. Raises UsageError."""
     loaded: dict[Engine, None] = {}
     wanted: list[str] = []
     by_method = {method_name(engine): engine for engine in registry.ENGINES}
@@ -179,7 +179,7 @@ def pytest_report_header() -> list[str]:
 
 
 def case_of(item: pytest.Item) -> Case | None:
-    """The case that a test is about; None for any other test."""
+    """The case of a test; None for a test without a case."""
     callspec = getattr(item, "callspec", None)
     value = callspec.params.get("case") if callspec is not None else None
     return value if isinstance(value, Case) else None
@@ -213,9 +213,9 @@ def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) ->
 
 @pytest.fixture(scope="session")
 def verdicts(request: pytest.FixtureRequest) -> dict[Case, CaseVerdict]:
-    """The verdict on every case that is selected in this session; only their cells are run.
+    """The verdicts on the selected cases; only their cells are run.
 
-    The grid has a pool on all processors. Below `pytest -n` every worker would run the whole grid, so it is skipped.
+    The pool uses all processors. With `pytest -n` every worker would run the grid, so the tests are skipped.
     """
     if hasattr(request.config, "workerinput"):
         pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")

@@ -23,13 +23,13 @@ from reports.model.outcomes import SATURATED, Outcome
 from reports.model.page import Page
 from reports.model.quantities import QUANTITY
 
-# How much the observed order may lie below the declared one. At an error of 0.1 rad the next power of the step is a
-# tenth of the leading one, and a thirtieth half a decade below: this changes the observed order by up to 0.1, with
-# either sign. A last point a few times above rounding changes it by about as much.
+# Allowed difference of the observed order below the declared order. At an error of 0.1 rad the next power of the step
+# has a tenth of the leading term, and half a decade lower a thirtieth. This changes the observed order by up to 0.1. A
+# last point slightly above rounding changes the order by a similar amount.
 BELOW = 0.4
-# How much it may lie above: a declared order that is one too low fails.
+# Allowed difference of the observed order above the declared order, below 1 so that a declaration one too low fails.
 ABOVE = 0.95
-# Errors above this [rad] are not proportional to their cause, so no order is fitted to them.
+# Angle errors [rad] above this value are not proportional to their cause, so they are left out of the fit of an order.
 PROPORTIONAL = 0.1
 TOO_FEW = "fewer than three steps have an error above rounding and below a tenth of a radian"
 
@@ -64,15 +64,17 @@ ROOM = 20.0
 # over the samples may be at another sample. Smaller than 10^0.5, so that an error that does not fall between the two
 # finest steps fails even at first order.
 ROOM_OWN = 2.5
-# This factor in a prescribed motion: errors do not propagate, and the largest one is at the same instant at every step.
-# The next power alone counts: in the driven four-bar 6 % at the coarsest step, from the two orders of the judge.
+# Replaces ROOM_OWN in a prescribed motion, in which errors do not propagate and the largest error is at the same time
+# for every step. Only the next power of the step counts: in the driven four-bar it is 6 % at the coarsest step,
+# computed from the judge's two orders.
 ROOM_PRESCRIBED = 1.25
-# Coarser steps that are needed to predict an error: at a single one two errors may cancel.
+# Number of coarser steps that are needed to predict an error, since at a single step two errors may cancel.
 ENOUGH = 2
 # Without a declared order: factor on the difference between the errors at the method's steps. If the step changes the
 # error by less than a twentieth, the model is a different one.
 ROOM_UNPROMISED = 20.0
-# Such errors pass below this part of the largest comparable one, since two may be equal by chance.
+# Errors without a declared order pass if they are below this fraction of the largest comparable error, since two errors
+# may be equal by chance.
 SMALL = 1e-3
 
 
@@ -91,7 +93,7 @@ def terms(
         # Rounding of the pose changes velocities at the rate of the motion; see `Prediction.error`.
         rounding = max(rounding, prediction.speed / prediction.length * QUANTITY["angle"].rounding)
     if quantity not in ("gap", "reaction"):
-        rounding *= promise.amplified  # the weights of an extrapolation
+        rounding *= promise.amplified  # the weights of an extrapolation amplify rounding
     if quantity == "reaction" and promise.differences:  # a change of velocity over the step
         rounding += velocity * promise.amplified * promise.differences / step / prediction.acceleration
     if promise.of(quantity) == EXACT:
@@ -148,7 +150,7 @@ def theory(
 def _reason_not_applicable(
     quantity: str, outcome: Outcome, prediction: Prediction, promise: ConvergenceOrder | NotDeclared
 ) -> str:
-    """The reason why the check does not apply; empty if it applies."""
+    """The reason why the check does not apply; empty if the check applies."""
     if not outcome.comparable:
         return "the run is not comparable, so its outcome alone is checked"
     if not prediction.is_defined(quantity):
@@ -174,7 +176,7 @@ def _promised(
     order = promise.of(quantity)
     rigid = prediction.prescribed and softness is None
     if order < EXACT and len(usable) >= (ENOUGH if math.isfinite(cost + soft) else 1):
-        # The next power of the step has its largest share at the coarsest steps, so these are left out.
+        # The coarsest steps are left out, since the next power of the step is largest for them.
         nearest = sorted(usable, key=lambda other: other.step)[: ENOUGH if rigid else None]
         known = [getattr(other, quantity) * (row.step / other.step) ** order for other in nearest]
         room = ROOM_PRESCRIBED if rigid else ROOM_OWN
@@ -202,11 +204,11 @@ def count_vacuous(checks: Iterable[Check]) -> Counter[str]:
     return Counter(check.sentence.removeprefix(", ") or "no bound" for check in checks if math.isinf(check.bound))
 
 
-# Steps per sample: those of the quick report and a finer one, since the order of a fast motion is seen only below its
-# time scale.
+# Steps per sample: the steps of the quick report and a finer one, since the order of a fast motion is observed only for
+# steps below its time scale.
 STEPS = (*QUICK, 3 * QUICK[-1])
 FINER = (*FULL, 1000)
-COST_LIMIT = 0.5  # s of one run, estimated: cells above are left out
+COST_LIMIT = 0.5  # estimated CPU time [s] of one run above which a cell is left out
 
 
 @dataclass(frozen=True)
@@ -228,7 +230,7 @@ class Case:
 
     @property
     def ours(self) -> bool:
-        """Whether scene and engine belong to this suite, so that their rows are published."""
+        """Whether scene and engine belong to this suite; only their rows are published."""
         return {type(each).__module__.partition(".")[0] for each in (self.scene, self.engine)} <= {
             "reference",
             "engines",
@@ -236,7 +238,6 @@ class Case:
 
     @property
     def amplified(self) -> float:
-        """The factor by which the method amplifies rounding."""
         return self.promise.amplified if isinstance(self.promise, ConvergenceOrder) else 1.0
 
     def cells(self) -> tuple[Cell, ...]:
@@ -255,7 +256,7 @@ class Case:
 
 
 def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
-    """The grid, with the order that the page declares for a scene and method, or else the engine for the mechanism."""
+    """The grid; an order is declared by the page for a scene and method, or else by the engine."""
     return tuple(
         _case(page, scene, engine) for page in pages for scene in page.scenes for engine in page.engines_of(scene)
     )

@@ -48,12 +48,11 @@ class CaseVerdict:
 
     @property
     def pairs(self) -> tuple[tuple[Measurement, Old], ...]:
-        """The rows that the baseline has, each with that of the baseline."""
+        """The rows for which the baseline has a row, each with the baseline's row."""
         return tuple((row, old) for row, old in zip(self.rows, self.before, strict=False) if old is not None)
 
     @property
     def new(self) -> int:
-        """The number of rows that the baseline lacks."""
         return sum(old is None for old in self.before)
 
     @property
@@ -72,7 +71,7 @@ class CaseVerdict:
 
     @property
     def worst(self) -> Check | None:
-        """The check of theory nearest to its bound; None if the engine cannot build the scene."""
+        """The check of theory with the largest share of its bound; None if the engine cannot build the scene."""
         return nearest(self.theory) if self.theory else None
 
 
@@ -90,12 +89,12 @@ class JudgeRun:
 
 
 def call(job: JudgeRun) -> Any:
-    """Run a job; a function of the module, so that workers can import it."""
+    """Run a job; a module function, so that workers can import it."""
     return job()
 
 
 def run_judge(jobs: Iterable[JudgeRun], workers: int) -> dict[JudgeRun, Any]:
-    """Run the jobs in worker processes, most bodies first. Raises RuntimeError if one fails."""
+    """Run the jobs in worker processes, beginning with the largest mechanisms. Raises RuntimeError if a job fails."""
     ordered = sorted(set(jobs), key=lambda job: -len(mechanism_of(job.scene).bodies))
     results: dict[JudgeRun, Any] = {}
     for job, result, _ in supervise(call, ordered, JUDGE_LIMIT, workers):
@@ -152,10 +151,11 @@ def run_and_check(
 
 
 def vanished(case: Case, before: Sequence[Old | None]) -> tuple[Check, ...]:
-    """A check that fails if the baseline lacks rows of a case (`before`: coarse steps first).
+    """A check that fails if the baseline lacks rows of a case.
 
-    A baseline of a coarser grid may end at a coarser step, and a third party's scene or engine may be missing. Steps
-    between others may not be missing, nor a scene and method of this suite.
+    before: the case's rows in the baseline, from coarse to fine steps. A baseline of a coarser grid may end at a
+    coarser step, and a third party's scene or engine may be missing. Intermediate steps, and a scene and method of this
+    suite, may not be missing.
     """
     finer = next((index for index, old in enumerate(reversed(before)) if old is not None), None)
     if finer is None:
@@ -183,7 +183,7 @@ def grown(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> tuple[Check, .
 
 
 def remarks(verdict: CaseVerdict) -> tuple[str, ...]:
-    """Sentences that change no verdict: improvements, and a CPU time of more than DEAR times the baseline's."""
+    """Sentences that do not change a verdict: improvements, and CPU times of more than DEAR times the baseline's."""
     known = (sentence for row, old in verdict.pairs for sentence in describe_improvements(row, old))
     dear = (f"{verdict.cost:.3g} times the CPU time of the baseline",) if verdict.cost > DEAR else ()
     return tuple(dict.fromkeys([*known, *dear]))

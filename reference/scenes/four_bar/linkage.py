@@ -56,13 +56,15 @@ def bar_forces(
     rates: tuple[Numbers, Numbers, Numbers],
     accelerations: tuple[Numbers, Numbers, Numbers],
 ) -> Forces:
-    """Forces for uniform bars of the given lengths [m], density [kg/m] and gravity [m/s^2], in a given motion.
+    """Forces that a given motion of uniform bars needs.
 
-    Angles, rates and accelerations are those of crank, coupler and rocker (theta, beta, phi) and broadcast.
+    lengths [m]; density [kg/m] of all bars or of crank, coupler and rocker; gravity [m/s^2]. Angles, rates and
+    accelerations are those of crank, coupler and rocker (theta, beta, phi); they broadcast.
     """
     masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
     falling = complex(*gravity)
-    # Plane vectors are complex numbers here: half bars, and their accelerations about their own end.
+    # Plane vectors are complex numbers. `half` has the vectors from a bar's first end to its centre, `moving` the
+    # accelerations of the centre relative to that end.
     half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
     moving = [
         arm * (1j * np.asarray(acceleration) - np.asarray(rate) ** 2)
@@ -77,7 +79,7 @@ def bar_forces(
         mass * length**2 / 12 * np.asarray(acceleration)
         for mass, length, acceleration in zip(masses, lengths, accelerations, strict=True)
     ]
-    # Moments of the coupler about B and of the rocker about D leave two equations for the force at C.
+    # The moments of the coupler about B and of the rocker about D are two equations for the force at C.
     coupler, rocker = 2 * half[1], 2 * half[2]
     about_b = -(spin[1] + _cross(half[1], pull[1]))
     about_d = spin[2] + _cross(half[2], pull[2])
@@ -93,9 +95,9 @@ def _cross(first: Any, second: Any) -> Any:
     return (np.conj(first) * second).imag
 
 
-# The chapter's pseudocode, which integrates the rates as printed: a method under test, not a reference. It does not
-# correct the closure of the loop, so errors of the angles accumulate: with the common default tolerance (rtol 1e-3) the
-# error of the coupler's angle is 0.02 rad after one revolution and a radian after a hundred.
+# The chapter's pseudocode, which integrates the printed rates, is a method under test and no reference. It does not
+# correct the closure of the loop, so errors of the angles accumulate. With the default tolerance of common packages
+# (rtol 1e-3) the error of the coupler's angle is 0.02 rad after one revolution and 1 rad after a hundred.
 
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
 # The nodes of the stages of methods with a fixed step, as fractions of the step.
@@ -104,7 +106,10 @@ Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSOD
 
 
 class RateIntegration(NamedTuple):
-    """Angles [rad] at times t [s], NaN after the method stopped; evaluations; the reason why it stopped, or ''."""
+    """Angles [rad] at times t [s], the number of evaluations, and the reason for a stop, or ''.
+
+    Angles are NaN after the method stopped.
+    """
 
     t: Array
     theta: Array
@@ -255,7 +260,7 @@ class FourBar(Valid):
 
     @validated
     def angles(self, theta: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
-        """beta and phi [rad] in closed form, which the chapter calls impossible."""
+        """beta and phi [rad] in closed form; the chapter claims that no closed form exists."""
         return self._evaluated(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
 
     @validated
@@ -274,7 +279,7 @@ class FourBar(Valid):
     def kinematics(
         self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
     ) -> Kinematics:
-        """All six quantities, fast for many crank angles."""
+        """Angles, rates and accelerations of coupler and rocker, computed together."""
         return Kinematics(*self._evaluated(theta, theta_dot, theta_ddot, branch, order=2))
 
     def _evaluated(

@@ -31,10 +31,10 @@ SMALL_ARGUMENT = 0.5
 class Tow(Valid):
     """A drawbar of `length` L [m] whose hitch moves on a circle.
 
-    start: x, y [m] and direction of travel [rad] of the hitch; `radius` R [m] of its circle: positive to the left,
-    negative to the right, infinite for a straight line. `angle` psi [rad] at the start: 0 is straight behind the hitch,
-    +-pi folded, ahead of the hitch; exactly +-math.pi counts as that unstable equilibrium. Raises InvalidMechanism for
-    a length that is not positive, a radius of 0 or NaN, or an angle beyond +-pi.
+    start: x, y [m] and direction of travel [rad] of the hitch. radius: radius R [m] of the circle, positive to the
+    left, negative to the right, infinite for a straight line. angle: psi [rad] at the start; 0 is straight behind the
+    hitch, and +-pi is ahead of the hitch. The value +-math.pi means exactly this unstable equilibrium. Raises
+    InvalidMechanism for a length that is not positive, a radius of 0 or NaN, or an angle beyond +-pi.
     """
 
     length: Positive
@@ -49,7 +49,7 @@ class Tow(Valid):
 
     @cached_property
     def _discriminant(self) -> float:
-        """1 - (L/R)^2 without cancellation at R = L."""
+        """1 - (L/R)^2, computed without cancellation at R = L."""
         if math.isinf(self.radius):
             return 1.0
         ratio = self.length / abs(self.radius)
@@ -62,76 +62,76 @@ class Tow(Valid):
         return sine, math.cos(self.angle), sine + self.length * self.curvature
 
     @validated
-    def relative_angle(self, way: ArrayLike) -> Array:
-        """psi [rad, not wrapped] after the hitch has moved by `way` s [m] (...), negative backwards."""
-        way = np.asarray(way, dtype=float)
-        across, along = self._moved(way)
-        # The angle of (q, p) is half of psi, and monotonic; it is less than pi if the discriminant is not negative.
-        half_turns = np.round(self._rate * way / math.pi) if self._discriminant < 0 else 0.0
+    def relative_angle(self, distance: ArrayLike) -> Array:
+        """psi [rad, not wrapped] after the hitch has moved by the distance s (...) [m], which is negative backwards."""
+        distance = np.asarray(distance, dtype=float)
+        across, along = self._half_angle_vector(distance)
+        # The angle of (q, p) is psi / 2 and monotonic. It stays below pi if the discriminant is not negative.
+        half_turns = np.round(self._rate * distance / math.pi) if self._discriminant < 0 else 0.0
         return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
 
     @cached_property
     def _rate(self) -> float:
-        """The rate of the angle of (q, p) for a negative discriminant, if the wheel goes round for ever [rad/m]."""
+        """The mean rate of the angle of (q, p) [rad/m] for a negative discriminant: the wheel turns without end."""
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
-    def _rest(self, way: Array) -> Array:
-        """The angle of (q, p) minus its half turns [rad]."""
-        return self._rate * way - np.round(self._rate * way / math.pi) * math.pi
+    def _remainder(self, distance: Array) -> Array:
+        """The angle of (q, p) without its half turns [rad]."""
+        return self._rate * distance - np.round(self._rate * distance / math.pi) * math.pi
 
-    def _moved(self, way: Array) -> tuple[Array, Array]:
-        """(q, p), which is a unit vector at the start, across and along its start, up to a common factor."""
+    def _half_angle_vector(self, distance: Array) -> tuple[Array, Array]:
+        """(q, p) up to a common factor; it is a unit vector at the start, in components across and along its start."""
         sine, cosine, swing = self._start
         if self._discriminant < 0:
-            rest = self._rest(way)
-            double = 2 * self.length * self._rate
-            across, along = -np.sin(rest) * swing, np.cos(rest) * double + np.sin(rest) * cosine
+            remainder = self._remainder(distance)
+            root = 2 * self.length * self._rate
+            across, along = -np.sin(remainder) * swing, np.cos(remainder) * root + np.sin(remainder) * cosine
             return across, along
         root = math.sqrt(self._discriminant)  # 2 L m
-        size = root * np.abs(way) / (2 * self.length)
-        near = size < SMALL_ARGUMENT
-        # tanh(m s)/(2 L m), also for m = 0.
-        argument = np.where(near & (size > 0), size, 1.0)
-        tangent = way / (2 * self.length) * np.where(size > 0, np.tanh(argument) / argument, 1.0)
-        # For large arguments the growing and the decaying exponential are separate, since tanh = 1 would lose a start
-        # near the unstable equilibrium. The small one of root + cosine and root - cosine is computed from their
-        # product.
+        argument_size = root * np.abs(distance) / (2 * self.length)
+        is_small = argument_size < SMALL_ARGUMENT
+        # tanh(m s)/(2 L m), with its limit for m = 0.
+        argument = np.where(is_small & (argument_size > 0), argument_size, 1.0)
+        tangent = distance / (2 * self.length) * np.where(argument_size > 0, np.tanh(argument) / argument, 1.0)
+        # For large arguments the growing and the decaying exponential are separate, since tanh = 1 would lose
+        # the digits of a start near the unstable equilibrium. The smaller of the two numbers root + cosine and
+        # root - cosine is their product divided by the larger one, without cancellation.
         product = swing * (sine - self.length * self.curvature)
         growing = root + cosine if cosine >= 0 else product / (root - cosine)
-        dying = root - cosine if cosine <= 0 else product / (root + cosine)
-        ratio = np.exp(-2 * size)
-        forward = np.where(way >= 0, growing + ratio * dying, ratio * growing + dying)
-        across = np.where(near, -tangent * swing, np.sign(way) * swing * np.expm1(-2 * size))
-        along = np.where(near, 1 + tangent * cosine, forward)
+        decaying = root - cosine if cosine <= 0 else product / (root + cosine)
+        ratio = np.exp(-2 * argument_size)
+        forward = np.where(distance >= 0, growing + ratio * decaying, ratio * growing + decaying)
+        across = np.where(is_small, -tangent * swing, np.sign(distance) * swing * np.expm1(-2 * argument_size))
+        along = np.where(is_small, 1 + tangent * cosine, forward)
         return across, along
 
     @validated
-    def heading(self, way: ArrayLike) -> Array:
+    def heading(self, distance: ArrayLike) -> Array:
         """The drawbar's direction in the world, from the wheel to the hitch [rad]."""
-        way = np.asarray(way, dtype=float)
+        distance = np.asarray(distance, dtype=float)
         if self._discriminant >= 0:
-            return self.start[2] + self.curvature * way + self.relative_angle(way)
-        # The hitch's angle and psi nearly cancel on a small circle, so their common part, 2 rate s, is left out of
-        # both.
-        across, along = self._moved(way)
+            return self.start[2] + self.curvature * distance + self.relative_angle(distance)
+        # On a small circle the hitch's angle and psi nearly cancel, so their common part 2 rate s is left out
+        # of both.
+        across, along = self._half_angle_vector(distance)
         slower = 1 / (self.length**2 * (abs(self.curvature) + 2 * self._rate))  # |c| - 2 rate
-        shared = math.copysign(1.0, self.radius) * (slower * way + 2 * self._rest(way))
-        return self.start[2] + self.angle + shared + 2 * np.arctan2(across, along)
+        slow_part = math.copysign(1.0, self.radius) * (slower * distance + 2 * self._remainder(distance))
+        return self.start[2] + self.angle + slow_part + 2 * np.arctan2(across, along)
 
     @validated
-    def hitch(self, way: ArrayLike) -> Array:
+    def hitch(self, distance: ArrayLike) -> Array:
         """Position of the hitch (..., 2) [m]."""
-        way = np.asarray(way, dtype=float)
-        half = 0.5 * self.curvature * way
-        chord = way * np.sinc(half / np.pi)
+        distance = np.asarray(distance, dtype=float)
+        half = 0.5 * self.curvature * distance
+        chord = distance * np.sinc(half / np.pi)
         angle = self.start[2] + half
         return np.stack([self.start[0] + chord * np.cos(angle), self.start[1] + chord * np.sin(angle)], axis=-1)
 
     @validated
-    def wheel(self, way: ArrayLike) -> Array:
+    def wheel(self, distance: ArrayLike) -> Array:
         """Position of the towed wheel (..., 2) [m]."""
-        heading = self.heading(way)
-        return self.hitch(way) - self.length * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+        heading = self.heading(distance)
+        return self.hitch(distance) - self.length * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
 
 
 @validated
@@ -143,12 +143,12 @@ def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Pos
 
 @dataclass(frozen=True)
 class Convoy:
-    """The poses of a car and its trailers, and the first jack-knife.
+    """The motion of a car and its trailers, and the first jack-knife.
 
     t (times,) [s]; pose (times, vehicles, 3) [m, m, rad]: middles of the axles and headings; speed (times, vehicles)
-    [m/s] along the headings, for a folded trailer with the other sign than the car's; error (times,) [m or rad]: a
-    bound on the error of the integration; jackknifed_at [s]: the first time at which a joint is bent beyond the limit;
-    jackknifed: the number of that trailer, from 1.
+    [m/s] along the headings, which has the opposite sign for a folded trailer; error (times,) [m or rad]: bound on the
+    integration error; jackknifed_at [s]: the first time at which a joint angle exceeds the limit; jackknifed: the
+    number of that trailer, from 1.
     """
 
     t: Array
@@ -169,8 +169,8 @@ class CarWithTrailers(Valid):
     """A car with trailers.
 
     wheelbase [m] from rear axle to steered wheel; lengths [m] of the drawbars from hitch to axle; hitches [m]: distance
-    of each hitch behind the axle before it, negative if ahead. Raises InvalidMechanism for a length that is not
-    positive, or unequal numbers of lengths and hitches.
+    of each hitch behind the axle of the vehicle before it, negative if the hitch is ahead of that axle. Raises
+    InvalidMechanism for a length that is not positive, or if the numbers of lengths and hitches differ.
     """
 
     wheelbase: Positive
@@ -253,7 +253,7 @@ class CarWithTrailers(Valid):
         return Convoy(times, np.stack(poses, axis=1), speeds, error, when, which)
 
     def _jackknife(self, motion: Integrated | None, first: Array, limit: float) -> tuple[float | None, int | None]:
-        """The first instant at which a joint passes the limit, and the number of its trailer, from 1."""
+        """The first time at which a joint angle exceeds the limit, and the number of its trailer, from 1."""
 
         def spare(states: Array) -> Array:
             bends = np.diff(states[..., 3:], axis=-1)
