@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike
 
 from reference.validators import COMPLEX, INVALID, NOT_FINITE, Floats, Rule, Validator, from_to, validator_of
 
-# Characters of a value in a message, at most.
+# Maximum number of characters of a value in a message.
 MAX_CHARACTERS = 80
-# The largest C int, since engines use these for counts.
+# The largest C int, since engines store counts in this type.
 LARGEST_COUNT = 2**31 - 1
 _ABOVE_ZERO = Rule(lambda value: value > 0, "greater than zero")
 
@@ -36,7 +36,7 @@ Sign = Annotated[int, Rule(lambda value: value in (1, -1), "that is 1 or -1")]
 Signs = Annotated[ArrayLike, Rule(lambda value: np.all(np.abs(value) == 1), "each 1 or -1")]
 Name = Annotated[str, Rule(lambda value: value.strip() and value.isprintable(), "that is not empty and can be printed")]
 Numbers = Annotated[Floats, NOT_FINITE]  # NaN for unknown values
-Complexes = Annotated[Any, COMPLEX]  # in any shape, for functions that are differentiated by a complex step
+Complexes = Annotated[Any, COMPLEX]  # array arguments of functions that are differentiated by a complex step
 AnyComplexes = Annotated[Complexes, NOT_FINITE]
 Times = Annotated[
     ArrayLike,
@@ -62,7 +62,7 @@ def short_repr(value: Any) -> str:
 
 
 def refusal(owner: str, name: str, value: Any, words: str) -> InvalidMechanism:
-    """The error for a value that the words don't describe; NotFinite for numbers with an infinity or NaN."""
+    """The error for a value that does not have the required property; NotFinite for numbers with an infinity or NaN."""
     plain = isinstance(value, float | complex | np.ndarray | np.generic) and np.asarray(value).dtype.kind in "fc"
     error = NotFinite if plain and not np.isfinite(value).all() else InvalidMechanism
     return error(f"{owner}: {name} is {short_repr(value)}; it must be {words}")
@@ -70,7 +70,6 @@ def refusal(owner: str, name: str, value: Any, words: str) -> InvalidMechanism:
 
 @cache
 def _validators_of_fields(cls: type) -> dict[str, Validator]:
-    """The validator of every field, by name."""
     hints = typing.get_type_hints(cls, include_extras=True)
     return {field.name: validator_of(hints[field.name]) for field in fields(cls)}
 
@@ -97,7 +96,7 @@ class Valid:
                 values[name] = taken
 
     def _owner(self) -> str:
-        """The object in a message: its class, and its name if that is a field."""
+        """The name of an object in a message: its class, and its field `name` if it has one."""
         name = self.__dict__.get("name")
         return f"{type(self).__name__} {short_repr(name)}" if isinstance(name, str) else type(self).__name__
 
@@ -106,7 +105,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def validated(function: Function) -> Function:
-    """Check a function's arguments by their annotations before it runs, but not a method's own object.
+    """Check a function's arguments by their annotations before it runs; the object of a method is not checked.
 
     For functions that users call. Loops call an unchecked function at every step.
     """
@@ -148,7 +147,7 @@ def index_of(owner: str, name: str, value: int, count: int) -> int:
 
 
 def sample_times(owner: str, t: ArrayLike) -> Floats:
-    """Times (times,) [s], or one, as an array; InvalidMechanism unless all are finite and none lies before 0."""
+    """One time or several [s] as an array (times,); InvalidMechanism unless all are finite and not negative."""
     return np.atleast_1d(np.asarray(validate(owner, "t", t, Times), dtype=float))
 
 
@@ -165,9 +164,9 @@ Value = TypeVar("Value")
 
 
 def freeze(value: Value) -> Value:
-    """Make all arrays in the value read-only and return it.
+    """Make all arrays in the value read-only and return the value.
 
-    An engine that changed a mechanism's arrays would falsify the rows of all engines that run later.
+    An engine that changed a mechanism's arrays would change the rows of all engines that run later.
     """
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
@@ -188,8 +187,8 @@ class cached_readonly(cached_property[Value]):
         self.__doc__ = function.__doc__
 
 
-# Bytes of one array: far above the need of this suite's scenes. A machine with 8 GB has room for such an array and for
-# the copies that linear algebra makes.
+# Maximum number of bytes of one array, which is far above the need of this suite's scenes. A machine with 8 GB has
+# memory for such an array and for the copies in linear algebra.
 LARGEST_ARRAY = 2 * 2**30
 
 

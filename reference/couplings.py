@@ -1,7 +1,7 @@
-"""Linear relations of relative coordinates, between any number of bodies: a mimic joint, rack and pinion, a tendon.
+"""Linear relations between relative coordinates of any number of bodies: mimic joints, rack and pinion, tendons.
 
-A `Term` is a factor times one relative coordinate of two bodies; the row of a sum of terms is the sum of their rows. A
-`Coupling` keeps such a sum constant; `forces.CoupledForce` acts along it.
+A `Term` is a factor times one relative coordinate of two bodies. The row of a sum of terms is the sum of their rows. A
+`Coupling` keeps such a sum constant; `forces.CoupledForce` acts along such a sum.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Term(Valid):
     second_point: tuple[float, float] = (0.0, 0.0)
 
     def value(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """factor times the coordinate (...) at poses (..., 3)."""
+        """The factor times the coordinate (...) at poses (..., 3)."""
         if not self.sliding:
             return self.factor * (second[..., 2] - first[..., 2])
         line = first[..., 2] + self.line_angle
@@ -48,7 +48,7 @@ class Term(Valid):
         return self.factor * (np.cos(line) * x + np.sin(line) * y)
 
     def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
-        """`value` as a part of a row's gap (..., 1)."""
+        """`value` with an additional axis (..., 1)."""
         return self.value(first, second)[..., None]
 
     def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
@@ -64,7 +64,7 @@ class Term(Valid):
 
 @dataclass(frozen=True)
 class OfTerms(Element):
-    """An element along the sum of its `terms`. Raises InvalidMechanism if there is no term."""
+    """An element that acts along the sum of its `terms`. Raises InvalidMechanism if there is no term."""
 
     name: Name
     terms: tuple[Term, ...]
@@ -80,7 +80,7 @@ class OfTerms(Element):
 
     @property
     def first(self) -> str | None:
-        """The first body of the first term, for messages that name an element by two bodies."""
+        """The first body of the first term, for messages that name two bodies of an element."""
         return self.terms[0].first
 
     @property
@@ -92,10 +92,10 @@ class OfTerms(Element):
 class Coupling(OfTerms, JointElement):
     """A linear relation of relative coordinates: the sum of the `terms` is `offset`.
 
-    With terms of hinge angles it is a gear train or a mimic joint; with a slide and a hinge, rack and pinion or a
-    screw. Row: the rate of the sum. Reaction: the generalised force along the sum, a force [N] if the first term is
-    sliding, else a torque [N m]. Each body gets it times the sum's derivative by its coordinates; the frame, as in a
-    `Gear`, takes the rest.
+    Examples are gear trains and mimic joints with terms of hinge angles, and a rack and pinion or a screw with a
+    sliding term and an angle. Row: the rate of the sum. Reaction: the generalised force along the sum, which is a force
+    [N] if the first term is sliding, otherwise a torque [N m]. Each body gets the reaction times the derivative of the
+    sum by its coordinates. The bearings carry the remaining forces, as for a `Gear`.
     """
 
     offset: float = 0.0
@@ -110,7 +110,7 @@ class Coupling(OfTerms, JointElement):
 
     @property
     def fallback_lengths(self) -> tuple[float, ...]:
-        """How far the first slide moves per radian of each angle [m], as the radius of a pinion."""
+        """The displacement of the first sliding term per radian of each angle [m], such as the radius of a pinion."""
         slide = next((abs(term.factor) for term in self.terms if term.sliding and term.factor), None)
         if slide is None:
             return ()

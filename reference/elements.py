@@ -1,7 +1,7 @@
-"""Facts about joints and force elements, so that tools can treat an element without naming its class.
+"""Properties of joints and force elements, with which tools can use an element without knowing its class.
 
-An element has `name`; `first` and `second` are names of bodies, None for the ground. Points [m] are in the bodies' own
-frames, from the centre of mass; on the ground they are world coordinates.
+An element has `name`; `first` and `second` are names of bodies, or None for the ground. Points [m] are in the bodies'
+own frames, from the centre of mass; points on the ground are world coordinates.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ class Element(Valid):
 
     @property
     def points(self) -> tuple[Place, ...]:
-        """The points by which the element is described, the first body's before the second's."""
+        """The points that define the element; the first body's points precede the second's."""
         return ()
 
     @property
     def fixed_points(self) -> tuple[Place, ...]:
-        """The points at which the element holds or pulls always the same material of a body or of the ground."""
+        """The points of a body or the ground at which the element acts at all times."""
         return self.points
 
     def in_units(self, mass: float, time: float) -> Self:
@@ -57,7 +57,7 @@ class Element(Valid):
 
 
 class JointElement(Element):
-    """Base of joints: `size` velocity rows, which are derivatives of a position where `holonomic`."""
+    """Base of joints with `size` velocity rows, which are derivatives of a position if `holonomic`."""
 
     size: ClassVar[int] = 1
     holonomic: ClassVar[bool] = True
@@ -74,16 +74,16 @@ class JointElement(Element):
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """Lengths of the joint [m] that count as the mechanism's like distances between points of a body."""
+        """Lengths of the joint [m] that count for the mechanism's length, like distances between points of a body."""
         return ()
 
     @property
     def fallback_lengths(self) -> tuple[float, ...]:
-        """Lengths of the joint [m] for a mechanism whose points all coincide."""
+        """Lengths of the joint [m] for a mechanism in which the points of each body coincide."""
         return ()
 
     def guides(self, places: tuple[Place, ...], span: float) -> bool:
-        """Whether a force between two places, `span` [m] apart at t = 0, acts along a line of this joint for ever."""
+        """Whether a force between two places, `span` [m] apart at t = 0, always acts along a line of this joint."""
         return False
 
 

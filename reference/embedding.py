@@ -1,13 +1,13 @@
-"""Reference motions in minimal coordinates, without joint forces: the embedding method.
+"""Reference motions in minimal coordinates without joint forces, by the embedding method.
 
 The allowed velocities of all bodies are V = T(c) nu, with coordinates c, quasi-velocities nu, and c' = nu unless a
 scene defines other rates. Ideal joints do no work in the columns of T, so (Kane and Levinson, Dynamics; Neimark and
 Fufaev)
 
-    T^T M T nu' = T^T (f - M T' nu).
+T^T M T nu' = T^T (f - M T' nu).
 
-T is derived by hand for each mechanism, its rate T' by a complex step along the motion, which is exact. Such a motion
-is an independent check of the joints' rows, which are not used.
+T is derived by hand for each mechanism. Its rate T' is computed by a complex step along the motion, which is exact. The
+motion does not use the joints' rows, so it is an independent check of them.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class EmbeddedScene(PlacedScene):
         return self._states(self.times(t))
 
     def _states(self, times: Array) -> tuple[Array, Array]:
-        if not times.any():  # only the start, as for a mechanism
+        if not times.any():  # only the start is requested, as for a mechanism
             return self._split(np.tile(self.start, (len(times), 1)))
         return self._split(shared(type(self).solved, self, max(self.duration, float(times.max())))(times))
 

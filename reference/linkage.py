@@ -1,4 +1,4 @@
-"""Linkages of uniform bars, from the points where they are pinned: a mechanism in a few readable lines."""
+"""Linkages of uniform bars, defined by the points at which the bars are pinned."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ def linkage(
     gravity: Vector = (0.0, -9.81),
     density: float = 1.0,
 ) -> Mechanism:
-    """Bars between named points [m], pinned where they share one, and to the ground at the points of `ground`.
+    """Bars between named points [m], pinned to each other at common points and to the ground at the points of `ground`.
 
-    bars: the two ends of each bar by its name, as ("A", "B") or "AB"; density [kg/m]; gravity [m/s^2]. The linkage
-    starts at rest. If more than two bars meet, each is pinned to the first of them. Raises InvalidMechanism.
+    bars: the two end points of each bar by its name, as ("A", "B") or "AB"; density [kg/m]; gravity [m/s^2]. The
+    linkage starts at rest. If more than two bars meet at a point, each of them is pinned to the first one. Raises
+    InvalidMechanism.
     """
     bodies, joints = list[Body](), list[Pin]()
     first: dict[str, tuple[str | None, Vector]] = {name: (None, _place(points, name)) for name in ground}

@@ -35,16 +35,17 @@ from reference.validators import Floats, of_shape
 States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
 Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]
 
-# Bytes of the dense rows whose rank is computed, at most: this size takes a minute, twice the bodies eight minutes.
+# Maximum number of bytes of dense rows for which the rank is computed. This takes a minute, and eight minutes with
+# twice as many bodies.
 LARGEST_RANK = 2**28
 
 
 @dataclass(frozen=True)
 class Mechanism(Valid):
-    """Bodies, the joints between them, and gravity [m/s^2].
+    """Bodies, the joints between them, force elements, and gravity [m/s^2].
 
     Raises InvalidMechanism for a repeated or unknown name, a joint of a body with itself, or a start that does not
-    satisfy the joints, since that error would be attributed to the engine.
+    satisfy the joints: this error would be attributed to the engine.
     """
 
     bodies: tuple[Body, ...]
@@ -142,14 +143,14 @@ class Mechanism(Valid):
     def potential(self, pose: States) -> NDArray[Any]:
         """Potential energy (...) [J] of gravity, springs, constant forces and torques at poses (..., bodies, 3).
 
-        The zero is: for gravity and forces the world's origin, for springs their rest, for torques equal angles.
+        It is zero for bodies at the world's origin, springs at rest, and equal angles of bodies with a torque.
         """
         of_gravity = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
         return of_gravity + self.applied.potential(pose) if self.forces else of_gravity
 
     @cached_readonly
     def rate(self) -> NDArray[np.float64]:
-        """The prescribed right-hand side of J v = rate (rows,), zero but for drives."""
+        """The right-hand side of J v = rate (rows,), which is not zero only for drives."""
         return np.array([value for joint in self.joints for value in joint.rate], dtype=float)
 
     @cached_readonly
@@ -196,14 +197,13 @@ class Mechanism(Valid):
         gravity: Annotated[Numbers, of_shape(2)] | None = None,
         twist: Reals | None = None,
     ) -> NDArray[np.float64]:
-        """The joints' reactions (..., rows) [N, N m] that these accelerations need: M a = f + J^T reaction.
+        """The joints' reactions (..., rows) [N, N m] for given accelerations: M a = f + J^T reaction.
 
-        pose, acceleration, and twist, which only dampers need, (..., bodies, 3). f is the force of gravity and of force
-        elements. By Newton's law these are the reactions that an engine with this motion has applied. `inertias`
-        (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are the mechanism's unless those of an engine's own
-        model are given, with NaN where it has none: then a wrong mass in the engine changes the reactions even if the
-        motion is prescribed. The reactions are unique if the rows are independent, else the minimum-norm ones are
-        returned.
+        pose, acceleration, and twist (which only dampers need): (..., bodies, 3). f is the force of gravity and of
+        force elements. By Newton's law an engine with this motion has applied these reactions. inertias (bodies, 3)
+        [kg, kg, kg m^2] and gravity (2,) [m/s^2]: those of an engine's own model, NaN if unknown; by default the
+        mechanism's. With them a wrong mass in the engine changes the reactions even if the motion is prescribed.
+        Reactions of dependent rows are not unique, and the minimum-norm ones are returned.
         """
         inertias = self.inertias if inertias is None else np.where(np.isnan(inertias), self.inertias, inertias)
         falling = self.free_fall if gravity is None else np.append(gravity, 0.0)
@@ -217,7 +217,7 @@ class Mechanism(Valid):
     def reactions_of(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Reactions (..., rows) that give masses (bodies, 3) an `excess` acceleration (..., bodies, 3)."""
+        """Reactions (..., rows) that cause an `excess` acceleration (..., bodies, 3) with inertias (bodies, 3)."""
         if self.row_count >= MANY_ROWS and np.ndim(pose) == np.ndim(excess) == 2:
             return self.reactions_of(pose[None], excess[None], inertias)[0]
         if self.row_count >= MANY_ROWS and np.ndim(pose) == 3:
@@ -273,15 +273,15 @@ class Mechanism(Valid):
 
 
 Array = NDArray[np.float64]
-# The violation of a row at the start that is allowed, relative to the mechanism's length or speed: far above rounding,
-# far below a mistake.
+# Allowed violation of a row at the start, relative to the mechanism's length or speed. The value is far above rounding
+# and far below a mistake in the input.
 START_TOLERANCE = 1e-9
 # Rounding of a coordinate, in units of its last digit, when a body and its joints are placed.
 PLACEMENT_ROUNDINGS = 64
 
 
 def refuse_a_bad_start(mechanism: Mechanism) -> None:
-    """Raise InvalidMechanism, with the row, body or force, for a start with which no engine can begin."""
+    """Raise InvalidMechanism, with the row, body or force, if no engine can begin with the start."""
     with np.errstate(over="ignore"):
         energies = 0.5 * np.sum(mechanism.inertias * mechanism.twist**2, axis=-1)
     for body, energy in zip(mechanism.bodies, energies.tolist(), strict=True):
@@ -305,12 +305,13 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
 
 
 def open_joint(mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: float) -> str | None:
-    """A sentence about the row with the largest violation at the start; None if all are within tolerance.
+    """A sentence about the row with the largest violation at the start; None if all violations are allowed.
 
-    gap, slip (rows,); pose, twist (bodies, 3); size [m].
+    gap, slip (rows,); pose, twist (bodies, 3); size: length of the mechanism [m].
     """
     speed = np.abs(twist[:, :2]).max() + size * np.abs(twist[:, 2]).max()
-    # Relative to the mechanism's own size and speed, and above the rounding of a pose far from the origin.
+    # The tolerance is relative to the mechanism's length and speed, and above the rounding of a pose far from the
+    # origin.
     rounding = PLACEMENT_ROUNDINGS * np.finfo(float).eps * np.abs(pose).max(axis=0)
     allowed_gap = START_TOLERANCE * size + max(rounding[:2]), START_TOLERANCE + rounding[2]
     for violation, (length, angle), (unit, angular), verb in (

@@ -24,8 +24,8 @@ from reference.joints import Joint
 
 Array = NDArray[np.float64]
 
-# Singular values below this fraction of the largest count as zero: far above rounding, far below those of a regular
-# mechanism.
+# Singular values below this fraction of the largest one count as zero. The value is far above rounding and far below
+# the singular values of regular mechanisms.
 RANK_TOLERANCE = 1e-9
 
 
@@ -43,9 +43,9 @@ def ranks(rows: Array, length: Array) -> NDArray[np.int_]:
 
 
 def undetermined(rows: Array, length: float) -> NDArray[np.bool_]:
-    """Mask (..., rows) of the rows (..., rows, 3 bodies) that are part of self-equilibrated forces.
+    """Mask (..., rows) of the rows (..., rows, 3 bodies) whose reactions rigid bodies do not determine.
 
-    The motion does not depend on these forces, so rigid bodies alone don't determine the reactions of such rows.
+    These rows have a non-zero component in the null space of rows^T, so the motion does not depend on their reactions.
     """
     _, singular, right = np.linalg.svd(np.swapaxes(_unitless(rows, length), -1, -2))
     count = rows.shape[-2]
@@ -105,13 +105,13 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
 
 
 def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
-    """Remove the null-space component of rows^T from the solution: the minimum-norm forces, in units of `size`."""
+    """The minimum-norm forces: the solution without its component in the null space of rows^T, in units of `size`."""
     _, singular, right = np.linalg.svd(matrix, full_matrices=True)
     count = matrix.shape[-1]
     padded = np.zeros((*singular.shape[:-1], count))
     padded[..., : singular.shape[-1]] = singular
     idle = padded <= RANK_TOLERANCE * singular[..., :1]
-    # Columns that span the idle forces, in units of `size`; the others are set to zero.
+    # Columns that span the null space of rows^T, in units of `size`; the other columns are zero.
     basis = (scale / size)[..., :, None] * np.swapaxes(right, -1, -2) * idle[..., None, :]
     measured = solution / size
     weights = _times(np.linalg.pinv(basis, rcond=RANK_TOLERANCE), measured)
@@ -240,7 +240,7 @@ def stacked(joints: Sequence[Any]) -> Any:
     return stacked
 
 
-# Number of rows from which the band solver is used; the dense solver is as fast for fewer.
+# Number of rows from which the band solver is used; for fewer rows the dense solver is as fast.
 MANY_ROWS = 24
 # Squared pivots below this fraction of the largest show dependent rows: the same threshold as for ranks.
 SMALLEST_PIVOT = 1e-9
@@ -276,8 +276,8 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
         factor, solution, failed = dpbsv(band, rows @ target, lower=1)
         if failed or not factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
             continue
-        # One step of iterative refinement restores the digits that are lost since the condition number of J M^-1 J^T is
-        # the square of that of M^(-1/2) J^T (Bjorck 1987, corrected seminormal equations).
+        # One step of iterative refinement restores the digits that are lost because the condition number of J
+        # M^-1 J^T is the square of that of M^(-1/2) J^T (Bjorck 1987, corrected seminormal equations).
         missing = rows @ (target - mobility * (rows.T @ solution))
         out[time, order] = solution + dpbtrs(factor, missing, lower=1)[0]
     return out

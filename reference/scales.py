@@ -1,4 +1,4 @@
-"""The length and the time of a mechanism, by which tolerances and an engine's settings are measured."""
+"""The length and the time of a mechanism, which define tolerances and an engine's settings."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from reference.forces import ForceElement
 from reference.joints import Body, Joint
 from reference.plane import components
 
-# Distance of points on one body, relative to a radius of curvature, up to which it is the rounding of a contact at a
-# centre of mass.
+# Distance of points on one body, relative to a radius of curvature, up to which it counts as a rounding error of a
+# contact at the centre of mass.
 ROUNDED = 1e-12
 
 
 def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequence[ForceElement] = ()) -> float:
-    """The largest length [m] of a rod, or distance between two points of one body at which something acts.
+    """The largest length [m] of a rod, or distance between two points of one body at which an element acts.
 
-    The centre of mass is one of these points, and so is the point by which a slot's line is described. A force along
-    that line acts at the slot's points, wherever on the line its own end is. If all points of each body coincide, the
-    result is the largest length of a spring or radius of curvature where something rolls, or 1.
+    The centre of mass is one of these points, and so is the point that defines a slot's line. A force along a slot's
+    line acts at the slot's points instead of its own. If the points of each body coincide, the result is the largest
+    length of a spring or radius of curvature of a rolling contact, or else 1.
     """
     by_name = {body.name: body for body in bodies}
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}
@@ -76,7 +76,7 @@ def _acting_points(force: ForceElement, joints: Sequence[Joint], bodies: Mapping
 
 
 def _guide(force: ForceElement, joints: Sequence[Joint], bodies: Mapping[str, Body]) -> Joint | None:
-    """The joint along whose line a force acts in all positions, if there is one."""
+    """The joint along whose line the force acts at all times; None if there is none."""
     if not force.acts_along_line:
         return None
     span = _span(force.points, bodies)

@@ -1,4 +1,4 @@
-"""Scenes: the numbers of one experiment, from which follow a mechanism for engines and the reference motion."""
+"""Scenes: the data of one experiment, which define a mechanism for engines and the reference motion."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 from reference.validators import INVALID, Floats, of_shape, validator_of
 
-# Approximate time between samples [s]. Every step of a sweep is a fraction of it, so all steps share the sample times.
+# Approximate time between samples [s]. Every step of a sweep is a fraction of this time, so all steps have the same
+# sample times.
 SAMPLE_SPACING = 1e-2
 Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # NaN after the end of an engine's run
 # The annotations of a scene's times.
@@ -58,7 +59,7 @@ class NoMotion(InvalidMechanism):
 
 
 class Scene(Valid, ABC):
-    """Subclasses are frozen dataclasses, and their fields are the only place where a number is written.
+    """Base of scenes: frozen dataclasses whose fields are the only data of an experiment.
 
     `name` is the scene's key, `source` its place in the chapter, `duration` [s] the length of its runs. Until `horizon`
     [s] errors grow at most about linearly, so that convergence orders can be fitted. `max_durations` limits `max_time`.
@@ -141,8 +142,8 @@ class Scene(Valid, ABC):
     def max_time(self) -> float:
         """The last time of `motion` [s], `max_durations` times the duration.
 
-        An integrated motion loses digits in proportion to the time, a chaotic one loses all of them, and a closed form
-        has an error of about 1e-16 of the angle that was turned since 0.
+        The error of an integrated motion grows with the time, and that of a chaotic motion grows exponentially. A
+        closed form has an error of about 1e-16 of the angle of rotation since t = 0.
         """
         return self.max_durations * self.duration * (1 + 1e-9)  # since multiples of a step may be rounded upwards
 
@@ -254,7 +255,7 @@ def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
 
 
 def with_distinct_names(scenes: tuple[Scene, ...]) -> tuple[Scene, ...]:
-    """The scenes; those with the same name get names with the numbers that differ from the defaults."""
+    """The scenes; scenes with equal names get names with the numbers that differ from the defaults."""
     names = [scene.name for scene in scenes]
     return tuple(
         named(_replaced(scene, {}), _name(scene.name, _changed_fields(scene)))
@@ -297,7 +298,7 @@ def _name(base: str, values: Mapping[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    """A value with all its digits, without blanks."""
+    """A value with all its digits, without spaces."""
     if isinstance(value, tuple):
         return f"({','.join(map(_short, value))})"
     text = repr(value) if not isinstance(value, str) else value

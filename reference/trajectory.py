@@ -14,22 +14,22 @@ from reference.plane import rotated
 from reference.validators import NOT_FINITE, of_shape
 
 Array = NDArray[np.float64]
-# Instants in a notebook's table.
+# Number of times in a notebook's table.
 TABLE_ROWS = 6
-# A warning of our adapter begins with this. Stored rows keep the text of warnings alone.
+# A warning about an adapter of this suite begins with this text. Stored rows contain only the text of warnings.
 ADAPTER_PREFIX = "ours:"
 
 WarningKind = Literal[
-    "contact",  # a contact is lost, or turns too far in a step
+    "contact",  # a contact is lost, or rotates too far in a step
     "gap",  # a joint is open
-    "known fault",  # the release, or the engine, is known to move wrongly
-    "lost",  # the motion ends: numbers are not finite, a joint has no place, a solver gave up
+    "known fault",  # this release or this engine is known to compute wrong motions
+    "lost",  # the motion ends: numbers are not finite, a joint cannot be satisfied, or a solver fails
     "rank",  # rows of joints are nearly dependent, so that rounding moves them
-    "rate limit",  # a velocity was cut
+    "rate limit",  # a velocity was limited
     "reactions",  # reactions are unknown or have a large error
     "residual",  # a solver left a residual
-    "start reactions",  # the reactions at the start alone have an error
-    "stiff",  # stability and not accuracy sets the steps
+    "start reactions",  # only the reactions at the start have an error
+    "stiff",  # stability, not accuracy, determines the steps
     "unconverged",  # solver iterations leave a part of the slowest mode at every step
     "unresolved",  # the error may exceed the method's claim
     "other",
@@ -37,15 +37,14 @@ WarningKind = Literal[
 
 
 class RunWarning(str):
-    """A warning of a run: its text, with fields that say what it is about.
+    """A warning of a run: a text with fields for its kind, origin and time.
 
-    kind: what it is about, one of WarningKind
-    origin: "engine" for its own message, "upstream" for a fault of the engine that our code reports, "adapter" for a
-        finding about our adapter or method
-    time [s]: from when on it holds; None if that is not known
+    kind: one of WarningKind. origin: "engine" for a message of the engine, "upstream" for a fault of the engine that
+    this suite reports, "adapter" for a finding about this suite's adapter or method. time [s]: from this time the
+    warning holds; None if unknown.
 
-    It can be used wherever a string is expected, and two with the same text are equal. A plain string that begins with
-    "ours:" is one of the origin "adapter"; any other plain string is one of the engine.
+    A warning is a string, and two warnings with the same text are equal. A plain string that begins with "ours:" has
+    the origin "adapter"; any other plain string has the origin "engine".
     """
 
     kind: WarningKind
@@ -68,7 +67,7 @@ class RunWarning(str):
 
     @classmethod
     def of(cls, warning: str) -> RunWarning:
-        """The warning itself; a plain string as one of the kind "other"."""
+        """A warning as it is; a plain string as a warning of the kind "other"."""
         if isinstance(warning, RunWarning):
             return warning
         return cls(warning, origin="adapter" if warning.startswith(ADAPTER_PREFIX) else "engine")
@@ -168,6 +167,6 @@ def body_points(mechanism: Mechanism, pose: Array) -> dict[str, Array]:
 
 
 def ground_points(mechanism: Mechanism) -> Array:
-    """World points (points, 2) [m] of joints that are fixed to the ground; the line of a slot has no such point."""
+    """World points (points, 2) [m] of joints that are fixed to the ground; a slot's line has no such point."""
     points = [point for joint in mechanism.joints for name, point in joint.fixed_points if name is None]
     return np.array(list(dict.fromkeys(points)), dtype=float).reshape(-1, 2)

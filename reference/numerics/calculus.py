@@ -1,6 +1,6 @@
-"""The integral of a known function of time to rounding, and the derivative of an analytic function.
+"""The integral of a function of time, accurate to rounding, and the derivative of an analytic function.
 
-Integrals: adaptive panels of Chebyshev series. Derivatives: Cauchy's integral over a circle in the complex plane.
+Integrals use adaptive panels with Chebyshev series, derivatives Cauchy's integral over a circle in the complex plane.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# Points of a panel: they resolve a panel of about one radian to rounding.
+# Number of points of a panel, which resolve about one radian to rounding.
 PANEL_POINTS = 24
-# Last coefficients of a series that must be zero to rounding; else the panel is halved.
+# Number of the last coefficients of a series that must be zero to rounding; otherwise the panel is halved.
 TAIL = 4
 # Halvings of a panel around a jump of the integrand, after which the panel is shorter than rounding.
 MOST_HALVINGS = 46
@@ -37,7 +37,7 @@ def _series_at(series: NDArray[Any], place: NDArray[np.float64]) -> NDArray[Any]
     return series[:, 0] + place * later - latest
 
 
-# 40 MB of points; a scene of this suite has at most a few hundred panels.
+# limits the points to 40 MB; scenes of this suite have at most a few hundred panels
 MOST_PANELS = 100_000
 
 

@@ -30,23 +30,23 @@ Array = NDArray[np.float64]
 Extended = NDArray[np.longdouble]
 Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..., n) to (..., n)
 
-# Stages of a window.
+# Number of stages of a window.
 STAGES = 24
-# Stages of the coarser rule, whose difference shows the error.
+# Number of stages of the coarser rule; the difference of both rules is the error estimate.
 COARSE_STAGES = 16
 # Allowed error of the polynomial within a window, ten times the rounding of a double. The order at the window's end is
 # twice as high, so the error there is far below rounding.
 WINDOW_TOLERANCE = 3e-15
-# The first window in units of the start's time scale [rad]: short for any motion.
+# The first window in units of the start's time scale [rad], which is small for any motion.
 FIRST_WINDOW = 0.3
-# Iterations at which a window is followed by a longer one, by a shorter one, and by a second attempt of half its
-# length.
+# Numbers of iterations: up to the first the next window is longer, above the second shorter, and at the third the
+# window is repeated with half its length.
 FEW_ITERATIONS, MANY_ITERATIONS, MOST_ITERATIONS = 9, 12, 30
-# Factors on the length of a window in these three cases.
+# Factors on the length of the next window in these three cases.
 LONGER, SHORTER, HALVED = 1.2, 1 / 1.15, 0.5
-# Legendre coefficients of a window from which the accelerations of the next are extrapolated as a first guess.
+# Number of Legendre coefficients of a window from which the first guess of the next window is extrapolated.
 GUESS_COEFFICIENTS = 8
-# A motion that needs more windows approaches a singularity.
+# Maximum number of windows; a motion that needs more approaches a singularity.
 MOST_WINDOWS = 20_000
 # Windows after which `motion` changes to the explicit method: with a fast oscillation, accelerations in double
 # precision allow only short windows. The attempt costs a tenth of a second.

@@ -21,14 +21,14 @@ from reference.checks import InvalidMechanism
 Array = NDArray[np.float64]
 Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
 
-# Relative error of a step: about the smallest that double precision allows.
+# Relative error of a step, about the smallest one that double precision allows.
 STEP_TOLERANCE = 3e-14
-# Factor on the tolerance of the second integration, whose difference to the first shows the error.
+# Factor on the tolerance of the second integration, whose difference to the first is the error estimate.
 COARSER = 10.0
 # A motion that needs more steps approaches a singularity.
 MAX_STEPS = 20_000
-# The first step, relative to the time in which the start state changes by itself and its unit. It is short for any
-# motion, since a step may grow tenfold. The choice of scipy depends on the unit of time.
+# The first step, relative to the time in which the start state changes by itself and its unit. The value is small for
+# any motion, since a step may grow tenfold. SciPy's choice would depend on the unit of time.
 FIRST_STEP = 1e-3
 # After this number of steps, the integration stops if it would need too many even with steps LENGTHENED times as long.
 ENOUGH_STEPS = 200
@@ -46,7 +46,7 @@ def hopeless(now: float, until: float, longest: float, taken: int, most: int) ->
 
 @dataclass(frozen=True)
 class Integrated:
-    """Knots of a motion, and its rates: call it with times (times,) [s] for states (times, states)."""
+    """The knots and the rates of a motion; a call with times (times,) [s] returns states (times, states)."""
 
     rates: Rates
     times: Array  # (knots,)
@@ -104,7 +104,7 @@ def units_of_motion(rates: Rates, start: ArrayLike, coordinate: float = 1.0) -> 
     half = len(state) // 2
     fastest, hardest = np.abs(state[half:]).max(), np.abs(rates(state)[half:]).max()
     turning = float(max(fastest, math.sqrt(hardest * coordinate))) / (2 * math.pi)
-    return np.repeat([coordinate, turning or 1.0], half)  # any unit for a motion that stays at rest
+    return np.repeat([coordinate, turning or 1.0], half)  # any unit is valid for a motion that stays at rest
 
 
 def error_of(

@@ -1,4 +1,4 @@
-"""Roots of an increasing function for many targets at once, and the first instant at which a value is below zero."""
+"""Roots of an increasing function for many targets, and the first time at which a function is negative."""
 
 from __future__ import annotations
 
@@ -63,7 +63,8 @@ Function = Callable[[Array], tuple[Array, Array]]
 
 # Degree of a Chebyshev series over one interval.
 SERIES_DEGREE = 32
-# Rounding of a few hundred operations, relative to the size: values down to minus this count as zero.
+# Rounding of a few hundred operations, relative to the size: larger values than minus this number count as not
+# negative.
 SUM_ROUNDING = 1e-13
 # Largest coefficient in the last quarter of a converged series, relative to the size.
 CONVERGED = 1e-12
@@ -77,7 +78,7 @@ _LOBATTO_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_LOBATTO_POINTS, SERIES_
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
     """The root of a function between `low` and `high`, where its signs differ, to rounding of the larger bound."""
-    from scipy.optimize import brentq  # slow: half of the time in which all engines are imported
+    from scipy.optimize import brentq  # imported here, since the import is slow
 
     least = max(4 * np.finfo(float).eps * max(abs(low), abs(high)), np.finfo(float).tiny)
     return float(brentq(function, low, high, xtol=least, rtol=np.float64(1e-15)))  # type: ignore[arg-type]
