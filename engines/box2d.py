@@ -178,7 +178,6 @@ class Box2DWorld:
         return [(velocity.x, velocity.y, rate) for velocity, rate in velocities]
 
     def _push(self) -> None:
-        """Apply the force elements to the bodies, for one step."""
         pose, twist = np.array(self._poses()), np.array(self._twists())
         for index, angle in enumerate(pose[:, 2].tolist()):
             self.angles[index] += math.remainder(angle - self.angles[index], 2 * math.pi)

@@ -230,11 +230,9 @@ class BulletWorld:
             self.bullet.disconnect(self.server)
 
     def _call(self, function: str, *arguments: Any, **named: Any) -> Any:
-        """Call a function of the engine with our server."""
         return getattr(self.bullet, function)(*arguments, **named, physicsClientId=self.server)
 
     def _start(self) -> None:
-        """Switch damping off and set rates and motors."""
         rates = self.tree.start_rates()
         self._call("changeDynamics", self.body, -1, linearDamping=0.0, angularDamping=0.0)
         for link, index in zip(self.tree.links, self.links, strict=True):
@@ -289,7 +287,6 @@ class BulletWorld:
         self._call("changeConstraint", number, maxForce=MAX_FORCE, **settings)
 
     def _push(self) -> None:
-        """Apply the force elements to the links, for one step."""
         _, forces = pushes(self.tree, *map(np.array, self._state()))
         for link, index in zip(self.tree.links, self.links, strict=True):
             x, y, torque = forces[link.body]
@@ -298,7 +295,6 @@ class BulletWorld:
             self._call("applyExternalTorque", self.body, index, [0.0, 0.0, torque], self.bullet.WORLD_FRAME)
 
     def _state(self) -> tuple[list[float], list[float]]:
-        """The tree coordinates and their rates."""
         states = self.bullet.getJointStates(self.body, self.moving, self.server)
         return [state[0] for state in states], [state[1] for state in states]
 

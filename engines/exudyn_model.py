@@ -43,7 +43,6 @@ def resolved_ratio(mechanism: Mechanism) -> float:
 
 
 def holds_velocities(mechanism: Mechanism) -> bool:
-    """Whether a joint constrains velocities."""
     return any(isinstance(joint, Skate | Roll | Drive) for joint in mechanism.joints)
 
 

@@ -29,7 +29,6 @@ class Importer:
         return reader.read_object(model, terms)
 
     def read(self, model: Any, without: tuple[str, ...] = ()) -> Mechanism:
-        """The mechanism of a file or of an object; see `reading`."""
         return self.reading(model, ReadingTerms(without)).mechanism
 
 

@@ -130,7 +130,6 @@ def _module_of_file(path: Path) -> ModuleType:
 
 
 def _imported(name: str, owner: str, folder: Path) -> ModuleType:
-    """Import a module, also from this folder. Raises ValueError."""
     if str(folder) not in sys.path:
         sys.path.append(str(folder))  # at the end, so that it does not hide installed modules
     try:

@@ -109,7 +109,6 @@ class Mjx(MuJoCoOnDevice):
         return declared.instants(settings, mechanism, dt, steps, built or mechanism, accelerations, check)
 
     def stricter(self, mechanism: Mechanism) -> Mjx | None:
-        """The method with the stricter settings of MuJoCo."""
         settings = self.settings.stricter(mechanism)
         return None if settings is None else replace(self, settings=settings)
 
@@ -170,8 +169,6 @@ def _programs() -> tuple[Any, Any, Any]:
 
 
 class DeviceModel:
-    """A model of MuJoCo and its copy on the device."""
-
     def __init__(self, model: MuJoCoModel) -> None:
         self.mujoco, (self.mjx, self._steps, self._forward) = model, _programs()
         self._held, self._data = self.mjx.put_model(model.compiled), model.start()

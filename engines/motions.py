@@ -9,7 +9,6 @@ from reference.mechanism import Mechanism
 
 @validated
 def starts_at_rest(mechanism: Mechanism) -> bool:
-    """Whether no body moves at t = 0."""
     return not mechanism.twist.any()
 
 

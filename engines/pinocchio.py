@@ -266,13 +266,11 @@ Acceleration = Callable[[Array, Array], Array]
 
 
 def euler_step(acceleration: Acceleration, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
-    """A step of the semi-implicit Euler method."""
     v = v + dt * acceleration(q, v)
     return q + dt * v, v
 
 
 def runge_kutta_step(acceleration: Acceleration, q: Array, v: Array, dt: float) -> tuple[Array, Array]:
-    """A step of the classical Runge-Kutta method of fourth order for q'' = acceleration(q, q')."""
     first = acceleration(q, v)
     half = dt / 2
     v2 = v + half * first

@@ -224,7 +224,6 @@ class Reader(Protocol):
 
 
 def refuse(element: str, reason: str) -> Unsupported:
-    """The error for an element that has no ideal counterpart."""
     return Unsupported(f"{element}: {reason}")
 
 
@@ -234,7 +233,6 @@ def left_out(element: str) -> str:
 
 
 def refuse_at_start(model: OwnModel, mechanism: Mechanism) -> None:
-    """Raises Unsupported for an obstacle at the start."""
     for obstacle in model.obstacles(np.zeros(1), mechanism.pose[None], mechanism.twist[None]):
         reason = f"so it does at the start, and an ideal mechanism doesn't know it; {obstacle.remedy}"
         raise refuse(obstacle.words, reason)
@@ -247,7 +245,6 @@ class Names:
         self._taken: set[str] = set()
 
     def new(self, wanted: str) -> str:
-        """The wanted name, with a number if it is already used."""
         name, number = wanted, 2
         while name in self._taken:
             name, number = f"{wanted} ({number})", number + 1

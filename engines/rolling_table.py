@@ -73,7 +73,6 @@ class Rolled(Protocol):
 
 @by_identity()  # a table takes as long as thousands of steps
 def rolled(rolling: Rolling) -> Rolled:
-    """The fast functions of a rolling pair."""
     ground, body = _round(rolling.ground), _round(rolling.body)
     if body is not None and ground is not None:
         return RoundOnRound(rolling, ground, body)

@@ -76,7 +76,6 @@ class CheckedEngine:
     def run(
         self, mechanism: Mechanism, dt: float = CHECK_STEP, samples: int = CHECK_SAMPLES, every: int = 1
     ) -> Trajectory:
-        """The cached run of a mechanism."""
         key = (mechanism, dt, samples, every)
         if key not in self._runs:
             self._runs[key] = stepped(self.build(mechanism, dt), samples, every)
@@ -132,7 +131,6 @@ class World:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of its joints, each once, in the order of the mechanism."""
         return tuple(dict.fromkeys(type(joint).__name__.lower() for joint in self.mechanism.joints))
 
 

@@ -198,7 +198,6 @@ def _named(kind: str, index: int) -> str:
 
 
 def bodies_reordered(mechanism: Mechanism) -> Described:
-    """Bodies in reverse order."""
     changed = replace(mechanism, bodies=mechanism.bodies[::-1])
     return changed, lambda run: (run.pose[:, ::-1], run.twist[:, ::-1], run.reaction)
 

@@ -64,7 +64,6 @@ def world(
 
 
 def resting(name: str, joints: tuple[Joint, ...], reaction: list[float], place: complex, angle: float) -> World:
-    """A world with one body at rest."""
     return world(name, joints, lambda t: [(place, 0.0, 0.0, angle, 0.0, 0.0)], lambda t: reaction)
 
 
@@ -79,7 +78,6 @@ def swing(t: Array, angle: float, rate: float, frequency: float) -> tuple[Array,
 
 
 def round_about(radius: float, angle: Any, rate: Any, change: Any) -> tuple[Any, Any, Any]:
-    """Position, velocity and acceleration of a point on a circle about the origin."""
     point = radius * np.exp(1j * angle)
     return point, 1j * rate * point, (1j * change - rate**2) * point
 

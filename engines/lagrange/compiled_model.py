@@ -138,7 +138,6 @@ class CompiledModel:
         return cls(mechanism, system, new_storage(mechanism), positions, windows)
 
     def regularise(self, regularisation: Regularisation, rows: NDArray[np.bool_]) -> None:
-        """Regularise the rows that the mask `rows` (rows,) selects."""
         system, selected = self.system, self.positions[rows]
         system.constants["regularised"] = RowLaw.COMPLIANT if regularisation.compliance > 0 else RowLaw.SPRINGS
         for name in ("stiffness", "damping", "compliance"):
@@ -147,7 +146,6 @@ class CompiledModel:
 
     @property
     def has_dependent_rows(self) -> bool:
-        """Whether rows are linearly dependent at the start."""
         return bool(self.system.constants["dependent"])
 
     @property
@@ -157,11 +155,9 @@ class CompiledModel:
 
     @property
     def smallest_pivot(self) -> float:
-        """The smallest pivot of the row system, relative to its diagonal, since the last step began."""
         return float(self.system.status["smallest_pivot"])
 
     def warnings(self, tolerance: float | None) -> tuple[RunWarning, ...]:
-        """The warnings of projections and of step control after a run."""
         status = self.system.status
         warnings = [] if np.isnan(status["open_from"]) else [open_warning(float(status["open_from"]))]
         if tolerance is None:

@@ -167,7 +167,6 @@ class Dynamics:
         return self.acceleration_under(*self.reaction(pose, twist, t), pose, twist)
 
     def acceleration_under(self, rows: Array, reaction: Array, pose: Array, twist: Array) -> Array:
-        """Accelerations (bodies, 3) under given reactions (rows,)."""
         free = self.mechanism.unconstrained(pose, twist).reshape(-1)
         return (free + self.weight * (rows.T @ reaction)).reshape(-1, 3)
 
@@ -226,7 +225,6 @@ def semi_implicit_euler(dynamics: Dynamics) -> Step:
 
 
 def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
-    """Steps of an explicit Runge-Kutta method."""
     stages, weights, nodes = tableau
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:

@@ -92,7 +92,6 @@ class _JudgeRun(OneShot):
         return out
 
     def _looser_run(self, factor: float, parts: int) -> LagrangeRun:
-        """A run with `factor` times the tolerance and samples dt / parts apart."""
         tolerance = None if self._engine.tolerance is None else factor * self._engine.tolerance
         return LagrangeRun(replace(self._engine, tolerance=tolerance), self._mechanism, self._dt / parts)
 

@@ -28,7 +28,6 @@ SOURCE_FOLDER = Path(__file__).parent
 
 @cache
 def installed() -> bool:
-    """Whether numba is installed."""
     return find_spec("numba") is not None
 
 
@@ -39,8 +38,6 @@ def is_cold(adaptive: bool) -> bool:
 
 
 class CompiledFunctions(NamedTuple):
-    """The functions of the package `compiled` that Python calls."""
-
     fixed_steps: Callable[..., int]
     adaptive_steps: Callable[..., int]
     evaluate_samples: Callable[..., int]
@@ -68,7 +65,6 @@ def _digest() -> str:
 
 @cache
 def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
-    """A folder for this process alone."""
     return tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
 
 

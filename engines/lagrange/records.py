@@ -39,8 +39,6 @@ class RowLaw(IntEnum):
 
 
 class RowSelection(IntEnum):
-    """The rows for which the row system is solved."""
-
     ALL, HOLONOMIC, RIGID = range(3)
 
 

@@ -57,7 +57,6 @@ class LagrangeRun(OneShot):
 
     @property
     def dynamics(self) -> Dynamics:
-        """The equations of motion in numpy."""
         if self._dynamics is None:
             self._dynamics = Dynamics(self._mechanism, self._regularisation)
         return self._dynamics
@@ -91,7 +90,6 @@ class LagrangeRun(OneShot):
         return poses, twists
 
     def _step_compiled(self, model: CompiledModel, poses: Array, twists: Array, every: int) -> int:
-        """Fill the samples; returns the last completed one."""
         if self._engine.tolerance is not None:
             return model.adaptive_steps(self._engine.tolerance, self._dt * every, 0, poses, twists)
         iterations = PROJECTION_ITERATIONS if self._engine.stabilisation == "projection" else 0

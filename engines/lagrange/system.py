@@ -118,7 +118,6 @@ def system_of(mechanism: Mechanism) -> tuple[System, Integers]:
 
 
 def _table(record: np.dtype[np.void], values: Sequence[Mapping[str, Any]]) -> Records:
-    """A table of records with the given values; other fields are zero."""
     table = np.zeros(len(values), record)
     for row, fields in zip(table, values, strict=True):
         for name, value in fields.items():
@@ -134,7 +133,6 @@ def _bodies(mechanism: Mechanism) -> Records:
 
 
 def _between(element: Any, numbers: Numbers) -> dict[str, Any]:
-    """The two bodies of an element and its points on them."""
     first_x, first_y = getattr(element, "first_point", (0.0, 0.0))
     second_x, second_y = getattr(element, "second_point", (0.0, 0.0))
     points = {"first_x": first_x, "first_y": first_y, "second_x": second_x, "second_y": second_y}
@@ -184,7 +182,6 @@ def _first_rows(joints: Sequence[Joint], numbers: Numbers) -> Integers:
 
 
 def _bodies_of(terms: Iterable[Term], numbers: Numbers) -> list[int]:
-    """The moving bodies on which a sum of terms depends."""
     names = [name for term in terms for name in (term.first, term.second) if name is not None]
     return [numbers[name] for name in dict.fromkeys(names)]
 

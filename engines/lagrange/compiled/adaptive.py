@@ -104,7 +104,6 @@ def evaluate_stages(system, storage, method, t, dt):
 
 @merged
 def finish_step(system, storage, iterations, end):
-    """Project the new state and evaluate the thirteenth stage there."""
     pose, twist = storage.new_pose, storage.new_twist
     project(system, pose, twist, end, iterations, storage.pose_unit)
     accelerate(system, pose, twist, end, storage.acceleration)

@@ -12,7 +12,6 @@ from engines.lagrange.compiled import inlined, inner
 
 @inner
 def coupling_equations(system):
-    """Set the ends, gap and bias of the row of each coupling."""
     bodies, equations, ends = system.bodies, system.equations, system.ends
     for index in range(len(system.terms)):
         term = system.terms[index]

@@ -38,7 +38,6 @@ def is_left_out(system, row):
 
 @inlined
 def assemble(system):
-    """Set the matrix to J M^-1 J^T."""
     matrix, ends = system.matrix, system.ends
     for entry in range(len(matrix)):
         matrix[entry] = 0.0
@@ -123,7 +122,6 @@ def substitute(system, vector):
 
 @inlined
 def apply_reactions(system):
-    """Set `change` to M^-1 J^T reaction."""
     change, ends, bodies = system.change, system.ends, system.bodies
     for k in range(len(change)):
         change[k] = 0.0
@@ -151,7 +149,6 @@ def add_end(vector, body, end, factor):
 
 @inlined
 def row_times(system, index, vector):
-    """The product of one row of J with a vector of coordinates."""
     row, end, other = system.rows[index], system.ends[2 * index], system.ends[2 * index + 1]
     first, second = 3 * row.first, 3 * row.second
     value = (
@@ -174,7 +171,6 @@ def row_times(system, index, vector):
 
 @inner
 def factorise_rows(system):
-    """Set the factor of the selected rows."""
     if system.constants.regularised == RowLaw.COMPLIANT and system.status.selection == RowSelection.ALL:
         assemble_compliant(system)
     else:

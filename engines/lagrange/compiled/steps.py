@@ -104,7 +104,6 @@ def copy_state(pose, twist, to_pose, to_twist):
 
 @inner
 def evaluate_stage(system, storage, stages, nodes, stage, t, dt):
-    """Set the velocity and the acceleration of one stage of a tableau."""
     velocities, accelerations = storage.velocities, storage.accelerations
     pose, twist = storage.stage_pose, storage.stage_twist
     for k in range(len(pose)):
