@@ -258,9 +258,9 @@ def _is_user_row(compiled: Any, equality: int) -> bool:
 
 def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, columns: list[int]) -> list[int]:
     """The indices among `candidates` of solver rows that are linear combinations of `rows` in these columns."""
-    these, span = solver_rows[candidates][:, columns], rows[:, columns].T
-    residual = these.T - span @ np.linalg.lstsq(span, these.T, rcond=None)[0]
-    is_inside = np.linalg.norm(residual, axis=0) <= SAME_ROW * np.linalg.norm(these, axis=1)
+    tested, span = solver_rows[candidates][:, columns], rows[:, columns].T
+    residual = tested.T - span @ np.linalg.lstsq(span, tested.T, rcond=None)[0]
+    is_inside = np.linalg.norm(residual, axis=0) <= SAME_ROW * np.linalg.norm(tested, axis=1)
     return [number for number, inside in zip(candidates, is_inside, strict=True) if inside]
 
 

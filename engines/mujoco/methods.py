@@ -39,9 +39,7 @@ EXTENDED = replace(
 )
 VARIANTS = (DEFAULT, TUNED, EXTENDED)
 METHODS = (
-    DEFAULT,
-    TUNED,
-    EXTENDED,
+    *VARIANTS,
     replace(TUNED, variant="stiff Euler", integrator="Euler"),
     replace(TUNED, variant="stiff implicitfast", integrator="implicitfast"),
     replace(TUNED, variant="stiff discrete", integrator="discrete"),

@@ -166,10 +166,6 @@ def _add_constraint(out: ImportedSpace, constraint: constraints.Constraint, labe
     add(out, constraint, label)
 
 
-def _add_pin(out: ImportedSpace, pivot: constraints.PivotJoint, label: str) -> None:
-    out.joints.append(Pin(label, *out.ends(pivot)))
-
-
 def _add_slot(out: ImportedSpace, groove: constraints.GrooveJoint, label: str) -> None:
     a, b = groove.a, groove.b
     ends = [out.local(a, point) for point in (groove.groove_a, groove.groove_b)]
@@ -256,7 +252,9 @@ class ConstraintEntry(NamedTuple):
 
 # The ideal counterpart of each kind of constraint. Other kinds are refused.
 READ_CONSTRAINTS: Mapping[type[constraints.Constraint], ConstraintEntry] = {
-    constraints.PivotJoint: ConstraintEntry("a pin", _add_pin),
+    constraints.PivotJoint: ConstraintEntry(
+        "a pin", lambda out, pivot, label: out.joints.append(Pin(label, *out.ends(pivot)))
+    ),
     constraints.GrooveJoint: ConstraintEntry("a slot", _add_slot),
     constraints.PinJoint: ConstraintEntry("a rod", _add_rod),
     constraints.GearJoint: ConstraintEntry("a gear, or a fixed angle", _add_gear),

@@ -50,8 +50,7 @@ def switch_off(space: pymunk.Space, element: str) -> None:
     elif element == "damping":
         space.damping = 1.0
     elif element == "limit":
-        limits = [limit for limit in space.constraints if isinstance(limit, LIMIT_JOINTS) and not is_equality(limit)]
-        space.remove(*limits)
+        space.remove(*(each for each in space.constraints if isinstance(each, LIMIT_JOINTS) and not is_equality(each)))
     elif element == "sleep":
         space.sleep_time_threshold = inf
     else:
@@ -316,13 +315,12 @@ def _may_touch(one: pymunk.Shape, other: pymunk.Shape, in_space: set[constraints
         return False
     if pymunk.Body.DYNAMIC not in (one.body.body_type, other.body.body_type):
         return False
-    joined: Any = one.body.constraints & other.body.constraints & in_space
-    if any(not joint.collide_bodies for joint in joined):
+    joints: Any = one.body.constraints & other.body.constraints & in_space
+    first, second = one.filter, other.filter
+    is_same_group = first.group and first.group == second.group
+    if is_same_group or not all(joint.collide_bodies for joint in joints):
         return False
-    mine, theirs = one.filter, other.filter
-    if mine.group and mine.group == theirs.group:
-        return False
-    return bool(mine.categories & theirs.mask) and bool(theirs.categories & mine.mask)
+    return bool(first.categories & second.mask) and bool(second.categories & first.mask)
 
 
 def _reached(limit: Any) -> bool:
