@@ -37,23 +37,23 @@ def _stored() -> dict[tuple[str, ...], list[dict[str, str]]]:
 
 
 def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
-    """The committed row of each cell that has one.
+    """The committed row of each cell for which one exists.
 
     Cells that differ only in the scene's numbers or the engine's settings are distinguished by digests. If the settings
-    have changed since, the only row with these numbers is used until the next publishing.
+    have changed, the only row with these numbers is used until the next publication.
     """
     return {cell: row for cell in cells if (row := _row(cell)) is not None}
 
 
 @cache
 def page_rows(page: Page) -> Mapping[Cell, Measurement]:
-    """The committed rows of a page's cells: read once for all tests, because a cell's key takes its time."""
+    """The committed rows of a page's cells; cached, because a cell's key takes time."""
     return committed_rows(shown_cells(page))
 
 
 @cache
 def answer_to(task: Task) -> Answer:
-    """A task's answer: worked out once for all tests of a process, because engines take their time."""
+    """A task's result; cached in the process, because engines take time."""
     return answered(task)
 
 

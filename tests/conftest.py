@@ -1,4 +1,4 @@
-"""Options and hooks of the whole test suite. The grid's own plugin is loaded by `-m crosscheck` alone."""
+"""Options and hooks of the test suite; only `-m crosscheck` loads the plugin of the grid."""
 
 import os
 import signal
@@ -14,9 +14,9 @@ pytest_plugins = ["pytester"]
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-os.environ.pop("COLUMNS", None)  # the width of the user's window, at which tables would be folded
+os.environ.pop("COLUMNS", None)  # unset, since tables depend on the width of the user's window
 
-# The longest test files, which begin first, so that no worker runs one of them after the others have ended.
+# The longest test files. They are run first, so that no worker runs one of them after the others have ended.
 LONGEST_FILES = (
     *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
     *("promised", "matrix", "random", "scenes", "conformance"),
@@ -60,7 +60,7 @@ def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
 
 @pytest.fixture
 def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make commands run in this process, without workers, which take seconds to start."""
+    """Make commands run in this process instead of in workers, which take seconds to start."""
     from reports.gate import walk
     from reports.run import cluster, supervisor, worker
     from tests.toys import in_process

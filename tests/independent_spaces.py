@@ -1,6 +1,6 @@
-"""Motions of pymunk spaces without our code: absolute coordinates, Lagrange multipliers, DOP853.
+"""Motions of pymunk spaces without code of this suite: absolute coordinates, Lagrange multipliers, DOP853.
 
-Rows of joints are derivatives by complex steps; parameters come from the space.
+Rows of joints are derivatives by complex steps; parameters are read from the space.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ IMAGINARY_STEP = 1e-30
 
 
 class Equations:
-    """The rows and forces of a space; coordinates (3 bodies, columns): x, y and angle of each body."""
+    """The rows and forces of a space; coordinates (3 bodies, columns) are x, y and angle of each body."""
 
     def __init__(self, space: pymunk.Space) -> None:
         self.space, self.bodies = space, list(space.bodies)
@@ -54,7 +54,7 @@ class Equations:
         return np.array([x + c * at[0] - s * at[1], y + s * at[0] + c * at[1]])
 
     def _between(self, q: Array, joint: Any) -> Array:
-        """From the anchor of the first body to that of the second."""
+        """The vector from the anchor of the first body to the anchor of the second."""
         return self._point(q, joint.b, joint.anchor_b) - self._point(q, joint.a, joint.anchor_a)
 
     def _turned(self, q: Array, joint: Any) -> Array:
@@ -102,13 +102,15 @@ class Equations:
         return out
 
     def _held(self, q: Array, speed: Array, wanted: Array) -> Array:
-        """Speeds or accelerations after the least change, by mass, with which the rows' rates are `wanted`."""
+        """The speeds or accelerations with the smallest change in the norm of the masses and with the rates
+        `wanted`.
+        """
         root = np.sqrt(self.inverse)
         rows = self._slopes(self._rows, q)
         return speed + root * np.linalg.lstsq(rows * root, wanted - rows @ speed, rcond=1e-11)[0]
 
     def nearest_speeds(self) -> Array:
-        """The speeds that satisfy the joints after the least impulse."""
+        """The speeds after the smallest impulse that satisfies the joints."""
         return self._held(self.start, self.speed, self.rates)
 
     def accelerations(self, q: Array, speed: Array) -> Array:
@@ -121,7 +123,7 @@ class Equations:
         return self._held(q, self.inverse * self.forces(q, speed), -bias)
 
     def motion(self, t: Array) -> Array:
-        """Poses (times, bodies, 3), from `nearest_speeds` on."""
+        """Poses (times, bodies, 3) from the space's poses and `nearest_speeds`."""
         count = self.start.size
         solution = solve_ivp(
             lambda _, state: np.concatenate([state[count:], self.accelerations(*np.split(state, 2))]),

@@ -94,7 +94,6 @@ MASSES = {"a": (1.0, 0.3), "b": (1.5, 0.2), "c": (0.7, 0.1), "d": (0.7, 0.1)}
 
 
 def bodies(*names: str) -> tuple[Body, ...]:
-    """Bodies at rest."""
     return tuple(Body(name, *MASSES[name], POSES[name]) for name in names)
 
 
@@ -117,7 +116,6 @@ def own(name: str | None, point: Vector) -> Vector:
 
 
 def pin(name: str, first: str | None, second: str, point: Vector) -> Pin:
-    """A pin at a point of the world."""
     return Pin(name, first, second, own(first, point), own(second, point))
 
 

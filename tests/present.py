@@ -1,4 +1,4 @@
-"""Values whose type allows None, and which are not None in a test."""
+"""A check that a value is not None, for values whose type allows None."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows with a different number in every field, so that a value from the wrong field is noticed."""
+"""Rows with a different number in each field, so that a test fails if code uses the wrong field."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ ROW = Measurement(
 
 
 def row(**changes: Any) -> Measurement:
-    """The row above, with these fields changed."""
+    """The row above with these fields changed."""
     return replace(ROW, **changes)
 
 
@@ -66,7 +66,7 @@ def row_of(method: str, **changes: Any) -> Measurement:
 
 
 def falling(method: str, errors: Iterable[float], quantity: str = "angle", **changes: Any) -> list[Measurement]:
-    """A sweep: these errors at steps of 1e-1, 1e-2 ... s, in this order; costs grow as the step shrinks."""
+    """A sweep with these errors at steps of 1e-1, 1e-2 ... s; the cost increases as the step decreases."""
     return [
         row_of(method, **{"step": 10.0 ** -(i + 1), "every": 10**i, "cpu": 10.0 ** (i - 3), quantity: error, **changes})
         for i, error in enumerate(errors)
@@ -74,6 +74,6 @@ def falling(method: str, errors: Iterable[float], quantity: str = "angle", **cha
 
 
 def table(text: str) -> list[list[str]]:
-    """The cells of a Markdown table: its head, then its lines, without the rule between them."""
+    """The cells of a Markdown table: the header, then the lines without the separator."""
     lines = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in text.splitlines()]
     return [lines[0], *lines[2:]]

@@ -1,4 +1,4 @@
-"""A scene and engines with known errors and known ways to fail: they exercise the reports, not any physics engine."""
+"""A scene and engines with known errors and known failures, for tests of the reports."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Disc(Scene):
         return turning(self.mechanism(), times)
 
     def branch_of(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
-        """-1 beyond 2 rad, which the motion never reaches: a change of assembly that opens no joint."""
+        """-1 beyond 2 rad, which the motion never reaches: a change of branch with satisfied joints."""
         return np.where(pose[..., 0, 2] > 2.0, -1, 1)
 
 
@@ -73,7 +73,7 @@ class ToyRun:
 
 
 class Plain(Engine):
-    """Base of test engines: the members of the contract other than name and model, as simple as possible."""
+    """Base of test engines with the simplest members of the contract except for name and model."""
 
     packages = ()
 
@@ -121,7 +121,7 @@ class SlowToy(Toy):
 
 @dataclass(frozen=True)
 class FailingToy(Toy):
-    """An engine that fails in the way of its variant, a key of FAILURES."""
+    """An engine with the failure of its variant, a key of FAILURES."""
 
     def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
         match self.variant:

@@ -30,7 +30,7 @@ Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positi
 
 BODY_NAMES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
 QUARTER = math.pi / 2
-# Small enough for the last of the published digits, which other methods confirm.
+# Tolerance that is small enough for the last published digit, which other methods confirm.
 ANDREWS_TOLERANCE = gauss.WINDOW_TOLERANCE / 10
 # Sides (`Dyad.side`) of the joints of the three pairs: bar and rod, upper, lower.
 SIDES = (-1, 1, -1)
@@ -77,7 +77,7 @@ class Andrews(PlacedScene):
 
     @property
     def samples(self) -> int:
-        """A hundred: half a millisecond by default, in which the crank turns by up to half a radian."""
+        """A hundred samples; in half a millisecond the crank rotates by up to half a radian."""
         return 100
 
     @property
@@ -132,7 +132,7 @@ class Andrews(PlacedScene):
         ends = {"O": Moving(*(0j * frames[0].value,) * 3)}
         ends["A"], ends["B"] = (ends["O"].shifted(complex(*pivot)) for pivot in (self.pivot_a, self.pivot_b))
         centres: dict[int, Moving] = {}
-        # From a known point of each body to its centre, and from there to its other joint.
+        # The centre of mass and the second joint of each body are computed from a known point of the body.
         for body, start, other in (
             (0, "O", "R"),
             (1, "R", "P"),
@@ -229,7 +229,7 @@ class Andrews(PlacedScene):
         return Mechanism(bodies, joints, (0.0, 0.0), forces)
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """1 if the joints of all three pairs are on the sides of the start (...,), -1 if a pair has folded."""
+        """1 if the joints of all three pairs are on the same sides as at the start (...,), else -1."""
         angle = pose[..., 2]
         folds = (
             (angle[..., 2] - QUARTER, angle[..., 1]),
@@ -241,22 +241,19 @@ class Andrews(PlacedScene):
 
 
 class Moving(NamedTuple):
-    """A quantity (...,) and its first two derivatives by one coordinate."""
+    """A quantity (...,) and its first two derivatives by a coordinate."""
 
     value: Array
     first: Array
     second: Array
 
     def plus(self, other: Moving) -> Moving:
-        """The sum of two."""
         return Moving(*(a + b for a, b in zip(self, other, strict=True)))
 
     def times(self, factor: complex) -> Moving:
-        """A fixed multiple."""
         return Moving(*(factor * part for part in self))
 
     def shifted(self, by: complex) -> Moving:
-        """With a constant added."""
         return Moving(self.value + by, self.first, self.second)
 
 

@@ -44,11 +44,11 @@ class NFourBar(Scene):
     gravity: Positive = 9.81
     speed: float = 1.0
     duration: Positive = 10.0
-    horizon: Positive = 10.0  # of the symmetric motion, a pendulum; engines may leave it at singular positions
+    horizon: Positive = 10.0  # freedoms of the symmetric motion; engines may leave this motion at singular positions
 
     @cached_property
     def pendulum(self) -> Pendulum:
-        """The motion of the cranks' common angle, from upright; a motion to +x at the top is clockwise."""
+        """The motion of the cranks' common angle from the upright position; a motion to +x at the top is clockwise."""
         n = self.loops
         frequency = math.sqrt(3 * (3 * n + 1) * self.gravity / (2 * (4 * n + 1) * self.length))
         return Pendulum(frequency, math.pi, -self.speed / self.length)
@@ -137,10 +137,11 @@ class NFourBar(Scene):
         return out
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """+1 if every loop is a parallelogram, -1 if one is folded, with its coupler along one of its cranks.
+        """+1 if every loop is a parallelogram, -1 if a loop is folded, with its coupler along a crank.
 
-        Equal bars can fold in two ways: one crank is along the ground and the other along the coupler. The result is
-        that of the best fitting angles; at a singular position all fit, and it is +1.
+        A loop of equal bars can fold in two ways: one crank lies along the ground and the other along the coupler. The
+        branch is that of the form with the smallest error of the angles; at a singular position all forms fit, and the
+        branch is +1.
         """
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
         first, second = cranks[..., :-1], cranks[..., 1:]

@@ -1,4 +1,4 @@
-"""A person on one foot or two, as trunk, thighs and shanks: five links that fall without muscles.
+"""A person on one foot or two: a trunk, thighs and shanks as five links that fall without muscle torques.
 
 Coordinates, modes and the sources of the segments: "A person on one foot" in `reference/scenes/derivations.md`. The
 ankles are pins in the ground, at y = 0.
@@ -28,10 +28,10 @@ UPRIGHT = (math.pi / 2, math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2)
 
 @dataclass(frozen=True)
 class Segment(Valid):
-    """Mass as a fraction of the body's mass, length as a fraction of its height, and fractions of that length.
+    """A body segment: its mass is a fraction of the person's mass, its length is a fraction of the height.
 
-    `centre` is the distance of the centre of mass from the upper joint (for the trunk: from the hip upwards);
-    `gyration` is the radius of gyration about the centre of mass.
+    `centre` is the distance of the centre of mass from the upper joint (for the trunk: from the hip upwards),
+    `gyration` the radius of gyration about the centre of mass. Both are fractions of the segment's length.
     """
 
     mass: Fraction
@@ -57,7 +57,7 @@ class OneFoot(EmbeddedScene):
 
     name: ClassVar[str] = "person_one_foot"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
-    max_durations: ClassVar[float] = 1.0  # later, the person would meet the ground, which is no joint
+    max_durations: ClassVar[float] = 1.0  # later, the person would touch the ground, which is not modelled
     mass: Positive = 75.0
     height: Positive = 1.75
     gravity: float = 9.81
@@ -66,7 +66,7 @@ class OneFoot(EmbeddedScene):
     trunk: float = 0.0
     right_thigh: float = 1.2
     right_shank: float = -0.6
-    duration: Positive = 0.25  # until the lifted foot meets the ground
+    duration: Positive = 0.25  # at this time the lifted foot touches the ground
     horizon: Positive = 0.25
 
     @property
@@ -76,12 +76,12 @@ class OneFoot(EmbeddedScene):
 
     @property
     def feet(self) -> float | None:
-        """Distance of the ankles on the ground [m], or None for one foot."""
+        """Distance between the ankles on the ground [m]; None for one foot."""
         return None
 
     @property
     def start(self) -> Array:
-        """At rest: the bodies' angles and their rates. The x axis is along the segment, away from the left ankle."""
+        """The bodies' angles, and their rates, which are zero; x axes are directed away from the left ankle."""
         aside = [self.left_shank, self.left_thigh, self.trunk, self.right_thigh, self.right_shank]
         return np.concatenate([np.array(aside) + UPRIGHT, np.zeros(5)])
 
@@ -92,7 +92,7 @@ class OneFoot(EmbeddedScene):
 
     @cached_readonly
     def _behind(self) -> Array:
-        """(5,) [m] from each body's joint nearer to the left ankle to its centre of mass, along its x axis."""
+        """Distance [m] (5,) of each body's centre of mass from its joint nearer to the left ankle, along its x axis."""
         centres = np.array([segment.centre for segment in self.segments])
         centres[:2] = 1 - centres[:2]  # the joint nearer to the left ankle is the lower one in the left leg
         return centres * self.lengths
@@ -165,7 +165,7 @@ class TwoFeet(OneFoot):
     hip_y: float = 0.8
     knees: Sign = 1
     trunk: float = -0.1
-    duration: Positive = 0.3  # until a knee meets the ground
+    duration: Positive = 0.3  # at this time a knee touches the ground
     horizon: Positive = 0.3
 
     def __post_init__(self) -> None:
@@ -196,7 +196,7 @@ class TwoFeet(OneFoot):
 
     @property
     def start(self) -> Array:
-        """At rest: hip x and y [m], the trunk's angle [rad], and their rates."""
+        """Hip x and y [m], the trunk's angle [rad], and their rates, which are zero."""
         return np.array([self.hip_x, self.hip_y, self.trunk + math.pi / 2, 0.0, 0.0, 0.0])
 
     def angle_rates(self, coordinates: Any) -> tuple[Any, Any]:
@@ -238,9 +238,9 @@ class TwoFeet(OneFoot):
 
 @dataclass(frozen=True)
 class SwayingOnOneFoot(OneFoot):
-    """Upright on one foot, the lifted leg a tenth of a radian aside; angles [rad] on the mode that swings at 9.3 rad/s.
+    """Upright on one foot, with the lifted leg rotated by 0.1 rad; the start is on the mode of 9.3 rad/s.
 
-    The horizon is the time of tenfold growth of a difference, by the unstable mode of the knee.
+    The horizon is the time in which the unstable mode of the knee increases a difference tenfold.
     """
 
     name: ClassVar[str] = "person_swaying"

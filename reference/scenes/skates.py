@@ -1,8 +1,8 @@
-"""Exact motions of bodies on a pin and on skates: pinned, on a slope, held; and Chaplygin's sleigh on one skate.
+"""Exact motions of a body on a pin, on a skate (Chaplygin's sleigh), on a slope, and at rest on several skates.
 
-With u the skate's speed along i', w the turning rate, a the offset of the centre of mass ahead of the skate:
-u' = a w^2, (I + m a^2) w' = -m a u w (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m
-the energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant, and u = V tanh p, w = (V/k) sech p with p = c + a V t/k^2.
+With u the skate's speed along i', w the turning rate, a the offset of the centre of mass ahead of the skate: u' = a
+w^2, (I + m a^2) w' = -m a u w (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m the
+energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant, and u = V tanh p, w = (V/k) sech p with p = c + a V t/k^2.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ class ChaplyginSleigh(Scene):
 
     @cached_property
     def _phase(self) -> float:
-        """c, for a sleigh that turns."""
+        """The constant c of a sleigh with a turning rate."""
         return math.asinh(self.speed / (self._arm * abs(self.turning_rate)))
 
     def growth_rate(self) -> float:
@@ -237,7 +237,7 @@ class SleighBackwards(ChaplyginSleigh):
     speed: float = -1.0
     turning_rate: float = 1e-3
     duration: Positive = 10.0
-    horizon: Positive = 0.8  # 1 / growth rate; later, errors grow exponentially until the sleigh has turned round
+    horizon: Positive = 0.8  # 1 / growth rate; later, errors grow exponentially until the sleigh has reversed
 
 
 @dataclass(frozen=True)
@@ -304,11 +304,11 @@ class SkateOnSlope(Scene):
 
 @dataclass(frozen=True)
 class HeldBySkates(Scene):
-    """A body at rest on a slope, on skates that leave no freedom of velocity.
+    """A body at rest on a slope, on skates that remove all freedoms of velocity.
 
-    Two skates always leave one freedom, since their axles meet in the centre of rotation or are parallel; a third skate
-    removes it. points [m] from the centre of mass, angles [rad] of the blades relative to the body; gravity [m/s^2]:
-    the component of g along the incline, to -y. Raises InvalidMechanism if a freedom is left.
+    Two skates always leave one freedom, since their axles intersect in the centre of rotation or are parallel. A third
+    skate removes this freedom. points [m] from the centre of mass, angles [rad] of the blades relative to the body;
+    gravity [m/s^2]: the component of g along the incline, to -y. Raises InvalidMechanism if a freedom remains.
     """
 
     name: ClassVar[str] = "held_by_skates"

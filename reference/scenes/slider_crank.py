@@ -1,11 +1,11 @@
-"""The slider-crank in formulas, and as scenes: driven at a constant rate, free, and two in which methods fail.
+"""The slider-crank in closed form, and its scenes: driven at a constant rate, free, and two in which methods fail.
 
 The crank turns about the origin; the slider moves along the line y = offset. With crank r, rod l, offset e and crank
 angle theta, the rod's angle beta follows from r sin(theta) + l sin(beta) = e, and x = r cos(theta) + l cos(beta). The
 two branches are cos(beta) > 0 (+1) and cos(beta) < 0 (-1).
 
-The sliding block has a slot at its centre of mass, and a drive of rate zero that keeps its angle: with a slot alone it
-could rotate about its pin. Methods fail for a rod's end in the slot, and for a slider that has to start the crank.
+The block has a slot at its centre of mass, and a drive of rate zero that keeps its angle. In the two scenes in which
+methods fail, a rod's end slides in the slot without a block, and a slider starts to move near a dead centre.
 """
 
 from __future__ import annotations
@@ -237,7 +237,7 @@ class SliderAtDeadCentre(FreeSliderCrank):
 
     @property
     def angle_unit(self) -> float:
-        """The distance from the dead centre at the start [rad]; errors grow in proportion to that distance."""
+        """The angle [rad] from the dead centre at the start; errors are proportional to it."""
         return min(1.0, abs(self.angle)) or 1.0
 
     def mechanism(self) -> Mechanism:

@@ -1,4 +1,4 @@
-"""Engines with one mistake each, around a right one, which `engines.conformance` and the gates must find."""
+"""Engines with one mistake each, for `engines.conformance` and the gates, which must find the mistake."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ from tests.wrong.mistakes import Mistake
 
 @dataclass(frozen=True)
 class Wrong(EngineWrapper):
-    """A right engine with the mistake of its variant: in the run that it builds, or in a declaration."""
+    """A correct engine with the mistake of its variant, in the run that it builds or in a declaration."""
 
     variant: str
     engine: Engine = LEAPFROG
@@ -139,7 +139,7 @@ MISTAKES: dict[str, tuple[str, Build]] = {
 
 
 def numbers_off(kind: str, relative: float) -> Build:
-    """The mistake of a wrong number in every model: of the middle body, or of gravity."""
+    """Add a wrong number to every model, in the middle body or in gravity."""
 
     def change(mechanism: Mechanism) -> Mechanism:
         owner = "" if kind == "gravity" else mechanism.bodies[len(mechanism.bodies) // 2].name
@@ -158,7 +158,7 @@ def driven_backwards(mechanism: Mechanism) -> Mechanism:
 
 
 def longer_steps(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """The mistake of steps that are 1 % too long, with the times of the right ones."""
+    """Make steps that are 1 % too long, with the times of the correct steps."""
     return Spoiled(inner.build(mechanism, 1.01 * dt), lambda run: replace(run, t=run.t / 1.01))
 
 

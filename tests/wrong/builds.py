@@ -1,4 +1,4 @@
-"""Mistakes of adapters: each function builds a wrong run around a right engine."""
+"""Mistakes of adapters: each function builds a wrong run with a correct engine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Build = Callable[[Engine, Mechanism, float], Any]
 
 
 class Spoiled:
-    """A run whose trajectory is changed before it is returned; `size` is that of the right one."""
+    """A run whose trajectory is changed before it is returned; `size` is that of the correct run."""
 
     def __init__(self, run: Run, spoil: Callable[[Trajectory], Trajectory]) -> None:
         self._run, self._spoil = run, spoil
@@ -30,7 +30,7 @@ class Spoiled:
 
 
 class Careless:
-    """A run that calls a function of (samples, every) without a check of these."""
+    """A run that calls a function of (samples, every) and does not check these counts."""
 
     def __init__(self, size: Any, call: Callable[[int, int], Any]) -> None:
         self.size, self._call = size, call
@@ -52,12 +52,12 @@ def right(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def after(spoil: Callable[[Trajectory, Mechanism, float], Trajectory]) -> Build:
-    """The mistake of changing the trajectory of a right run."""
+    """Change the trajectory of a correct run."""
     return lambda inner, mechanism, dt: Spoiled(inner.build(mechanism, dt), lambda run: spoil(run, mechanism, dt))
 
 
 def before(change: Callable[[Mechanism], Mechanism]) -> Build:
-    """The mistake of building another mechanism."""
+    """Build another mechanism."""
     return lambda inner, mechanism, dt: inner.build(change(mechanism), dt)
 
 
@@ -73,7 +73,7 @@ def times(name: str, factor: float) -> Build:
 
 
 def refusing(raise_if: Callable[[Mechanism], Any]) -> Build:
-    """The mistake of failing for mechanisms for which `raise_if` raises."""
+    """Fail for mechanisms for which `raise_if` raises."""
 
     def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
         raise_if(mechanism)
@@ -102,7 +102,7 @@ def any_count(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """The mistake that a second call continues after the first."""
+    """Continue after the first call when the run is called again."""
     done = 0
 
     def call(samples: int, every: int) -> Trajectory:
@@ -133,9 +133,9 @@ def wall_clock(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def from_neighbours(combine: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> Build:
-    """The mistake that arrays are combined from the states at a sample, a step later and a step before it.
+    """Combine arrays from the states at a sample, one step later and one step earlier.
 
-    `first`: the first sample is wrong too.
+    first: the first sample is wrong too.
     """
 
     def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
@@ -194,7 +194,7 @@ def wrapped(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajecto
 
 
 def walled(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """The mistake that there is a box of six metres around the origin."""
+    """Put walls around the origin, at the sides of a box of six metres."""
     beyond = np.where(np.abs(mechanism.pose[:, 0]) > 3.0, trajectory.t[:, None] ** 2, 0.0)
     return moved(trajectory, "pose", beyond[..., None])
 
@@ -205,7 +205,7 @@ def right_handed(mechanism: Mechanism) -> Mechanism:
 
 
 def from_the_ground_up(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """The mistake that bodies with a joint to the ground are returned first."""
+    """Return the bodies with a joint to the ground first."""
     grounded = {name for j in mechanism.joints if None in (j.first, j.second) for name in (j.first, j.second)}
     order = sorted(range(len(mechanism.bodies)), key=lambda i: mechanism.bodies[i].name not in grounded)
     return replace(trajectory, pose=trajectory.pose[:, order], twist=trajectory.twist[:, order])
@@ -217,6 +217,6 @@ def pins_first(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Traje
 
 
 def always_on_the_body(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """The mistake that reactions of joints with the ground are always forces on the body."""
+    """Return reactions of joints with the ground as forces on the body, for each order of the two bodies."""
     signs = [-1.0 if joint.second is None else 1.0 for joint in mechanism.joints for _ in range(joint.size)]
     return replace(trajectory, reaction=trajectory.reaction * signs)

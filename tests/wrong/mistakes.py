@@ -33,7 +33,7 @@ from reports.search.planted import Misbuilt
 Some = TypeVar("Some")
 
 NUMBER_KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
-# Bodies or joints that are all tried; of more, only the first, the middle and the last one.
+# Number of bodies or joints up to which all are changed; of more, only the first, the middle and the last one are.
 MOST_TRIED = 6
 
 
@@ -147,7 +147,7 @@ def _some(many: Sequence[Some]) -> Sequence[Some]:
 
 
 def mistakes(mechanism: Mechanism) -> tuple[Mistake, ...]:
-    """All numbers of a mechanism that can be wrong; for long chains those of the ends and the middle."""
+    """The mistakes in all numbers of a mechanism; for long chains only those of the ends and the middle."""
     return tuple(_mistakes(mechanism))
 
 
@@ -245,7 +245,7 @@ def shift(right: Measurement, wrong: Measurement) -> float:
 
 
 def noticed(trials: Sequence[MistakeTrial]) -> tuple[Mapping[Mistake, Sighting], ...]:
-    """The sightings of each of the trials, which are in one scene, so that the judge runs the scene once."""
+    """The sightings of each trial; the trials are in one scene, so that the judge runs the scene once."""
     scene = trials[0].scene
     judge = prediction(scene, kinds(scene, [trial.engine for trial in trials]))
     return tuple(sightings(trial, judge) for trial in trials)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
 
-# Roundings of a crank angle outside of the reachable range that are still counted as its end.
+# Number of roundings by which a crank angle may be outside of the reachable range.
 ANGLE_ROUNDINGS = 16
 
 
@@ -32,7 +32,7 @@ class Kinematics(NamedTuple):
 
 
 class OutOfReach(Exception):
-    """The loop can't close at an angle; `index` is the first such angle, `undetermined` is true if B is on D."""
+    """The loop can't close at an angle; `index`: the first such angle; `undetermined`: B is on D."""
 
     def __init__(self, index: int, undetermined: bool = False) -> None:
         super().__init__(index)
@@ -41,7 +41,7 @@ class OutOfReach(Exception):
 
 
 def difference(*terms: float) -> float:
-    """The sum of terms; exactly zero if it is within the rounding of the terms."""
+    """The sum of terms, set to zero if it is within the rounding of the terms."""
     total = math.fsum(terms)
     return 0.0 if abs(total) <= 4 * np.finfo(float).eps * sum(abs(term) for term in terms) else total
 

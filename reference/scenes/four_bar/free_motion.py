@@ -23,14 +23,15 @@ from reference.scenes.four_bar.linkage import FourBar
 Array = NDArray[np.float64]
 
 States = Callable[[Array], Any]
-# A thousand roundings of numpy.longdouble, or one of a double.
+# Tolerance: a thousand roundings of numpy.longdouble, or one of a double.
 CURVE_TOLERANCE = gauss.WINDOW_TOLERANCE / 10
-# The largest component of t at a change point, relative to the longest bar's square: the bars are in line to rounding.
+# The largest component of t, relative to the squared length of the longest bar, at which the bars are in line to
+# rounding.
 CHANGE_POINT = 1e-7
 
 
 class BarAngles(NamedTuple):
-    """(times, 3) of crank, coupler, rocker: angles [rad], rates [rad/s], accelerations [rad/s^2]."""
+    """Angles [rad], rates [rad/s] and accelerations [rad/s^2] (times, 3) of crank, coupler and rocker."""
 
     angle: Array
     rate: Array
@@ -144,7 +145,7 @@ class CurveMotion(Valid):
 
     @property
     def _cross(self) -> Any:
-        """The inertia that couples crank and coupler if they are in line [kg m^2]."""
+        """The inertia by which crank and coupler are coupled if they are in line [kg m^2]."""
         return np.longdouble(self.masses[1]) * np.longdouble(self.four_bar.crank) * np.longdouble(self.four_bar.coupler)
 
     def _inertia(self, angle: Any, t: Any) -> Any:

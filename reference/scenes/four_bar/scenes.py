@@ -1,5 +1,6 @@
-"""Four-bar scenes: the crank driven at a constant rate, the linkage free under its weight, and two scenes in which
-methods fail: a parallelogram through its change points, and a crank driven into its limit.
+"""Four-bar scenes: a crank with a constant rate, a free linkage, and two scenes in which methods fail.
+
+The two scenes are a parallelogram at its change points, and a crank that is driven to its limit.
 """
 
 from __future__ import annotations
@@ -96,9 +97,9 @@ class FourBarScene(Scene):
 
 @dataclass(frozen=True)
 class DrivenFourBar(FourBarScene):
-    """The chapter's sample: the crank turns at a constant rate, in closed form; `revolutions` of the crank.
+    """The chapter's sample in closed form: the crank turns at a constant rate for a number of `revolutions`.
 
-    Errors of a stepping method don't grow, since there is no freedom, so the horizon is the whole duration. `motion`
+    The linkage has no freedom, so errors of a stepping method don't grow, and the horizon is the duration. `motion`
     raises Unreachable if the crank can't turn that far.
     """
 
@@ -144,10 +145,10 @@ class DrivenFourBar(FourBarScene):
 
 @dataclass(frozen=True)
 class FreeFourBar(FourBarScene):
-    """The linkage under its weight, from rest or with a crank rate, also through crank limits.
+    """The linkage under its weight, from rest or with a crank rate; it may pass crank limits.
 
-    With one freedom and constant energy, errors are drifts of energy and time, which grow about linearly: the horizon
-    is the whole duration. (This does not hold if the energy is that of an unstable equilibrium, or at a change point.)
+    With one freedom and constant energy, errors are drifts of energy and time, which grow about linearly. So the
+    horizon is the duration. (This does not hold for the energy of an unstable equilibrium, or at a change point.)
     """
 
     name: ClassVar[str] = "free_four_bar"
@@ -217,11 +218,11 @@ IN_LINE = 1e-6
 
 @dataclass(frozen=True)
 class Parallelogram(DrivenFourBar):
-    """Crank and rocker equal, coupler and ground equal: twice a revolution all bars are in line.
+    """A parallelogram linkage: twice a revolution all bars are in line.
 
-    At these positions two motions satisfy the joints, with parallel and with crossed bars. The reference motion is the
-    smooth one, in which the coupler is always parallel to the ground. It has no constant `branch`, since C passes from
-    one side of B -> D to the other.
+    At these positions two motions satisfy the joints, with parallel and with crossed bars. The reference motion is
+    smooth: its coupler is always parallel to the ground. The `branch` is not constant, since C passes from one side of
+    B -> D to the other.
     """
 
     name: ClassVar[str] = "parallelogram"
@@ -242,7 +243,7 @@ class Parallelogram(DrivenFourBar):
             )
 
     def _motion(self, times: Array) -> Trajectory:
-        """Reactions are NaN if the bars are in line, since they are then not determined for rigid bars."""
+        """Reactions are NaN if the bars are in line, since rigid bodies do not determine them there."""
         angles = self._angles(times)
         pose, twist, acceleration = self._bodies(angles)
         reaction = np.full((len(times), 9), np.nan)

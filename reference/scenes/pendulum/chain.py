@@ -36,24 +36,24 @@ from reference.scenes.pendulum.link import direction_of
 
 Array = NDArray[np.float64]
 
-# Ratio of masses above which the forces are refined, since the acceleration of a light link between heavy ones is a
-# small difference of large forces.
+# Ratio of masses above which the forces are refined: the acceleration of a light link between heavy links is a small
+# difference of large forces.
 UNEVEN = 10.0
-# Steps of iterative refinement. Each reduces the error by about the relative error of the first solution, so that three
-# are enough up to a ratio of 1e9.
+# Number of steps of iterative refinement. Each step multiplies the error by about the relative error of the first
+# solution, so three steps suffice up to a ratio of 1e9.
 MAX_REFINEMENTS = 3
-# Relative correction after which no other step is needed: its square is below the rounding of extended precision.
+# Relative correction below which the refinement ends: its square is below the rounding of extended precision.
 CORRECTED = 3e-10
 
 
 Motion = Callable[[ArrayLike], Array]
 
-# Links up to which collocation is fastest, since a call of numpy costs more than its arithmetic; the explicit method is
-# faster for more.
+# Number of links up to which collocation is the fastest method, since a numpy call costs more than its arithmetic. The
+# explicit method is faster for more links.
 FEW_LINKS = 20
 # Difference of starts [rad] whose growth is measured: small compared with a swing, large compared with rounding.
 PERTURBATION = 1e-6
-# Growth of a difference that defines the horizon.
+# Factor by which a difference grows until the horizon.
 TENFOLD = 10.0
 
 
@@ -165,7 +165,7 @@ class Chain(Valid):
         return residual
 
     def _checked(self, *arguments: ArrayLike) -> list[Array]:
-        """Angles, rates and accelerations as arrays; raises InvalidMechanism unless all have the shape (..., links)."""
+        """Angles, rates and accelerations as arrays; InvalidMechanism unless all have the shape (..., links)."""
         states = [np.asarray(argument, dtype=float) for argument in arguments]
         shapes = [state.shape for state in states]
         if any(shape != shapes[0] or shape[-1:] != (self.links,) for shape in shapes):

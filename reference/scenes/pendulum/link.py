@@ -39,8 +39,8 @@ HALF_PRECISION = 1e-9
 
 
 def quarter_period(complement: float) -> float:
-    """K [1], the complete integral of the first kind, for 0 <= n <= 1; infinite at n = 0."""
-    # By the function that `incomplete` uses, so that the start rate of a body released from rest is exactly zero.
+    """K [1], the complete integral of the first kind, for 0 <= n <= 1; it is infinite for n = 0."""
+    # The function of `incomplete` is used, so that the start rate of a body released from rest is exactly zero.
     return float(elliprf(0.0, complement, 1.0))
 
 
@@ -124,7 +124,7 @@ class Pendulum(Valid):
 
     @cached_property
     def _start(self) -> tuple[float, float, float, float, float]:
-        """(direction, whole turns, s, c, p) with the rate made positive: |p|, and s, c of the nearest turn."""
+        """(direction, whole turns, s, c, p) for a positive rate: |p|, and s and c of the angle without whole turns."""
         direction = -1.0 if self.rate < 0 else 1.0
         rest = math.remainder(self.angle, 2 * math.pi)
         turns = round((self.angle - rest) / (2 * math.pi))
@@ -273,7 +273,7 @@ class PointPendulum(BarPendulum):
 
     @property
     def samples(self) -> int:
-        """Two per second, as in the benchmark; a hundred per second would be 200,000."""
+        """Two samples per second, as in the benchmark."""
         return max(1, round(2 * self.duration))
 
     @validated

@@ -31,7 +31,7 @@ class LinkPendulum(Scene):
 
     name: ClassVar[str] = "pendulum_2"
     source: ClassVar[str] = "problems 18.5.1 and 18.5.2; section 18.5, closed kinematic chains: a double pendulum"
-    # The motion is chaotic: at that time the reference motion of two links has half of its digits.
+    # The motion is chaotic: after this time the reference motion of two links has lost half of its digits.
     max_durations: ClassVar[float] = 2.0
     links: Count = 2
     length: Positive = 1.0

@@ -1,4 +1,4 @@
-"""A body rolling under gravity: its motion with one freedom, its forces, and the times at which it hops or slips."""
+"""A body that rolls under gravity: its motion with one freedom, its forces, and the times of hops and slips."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class RollingBody(Valid):
         return (pull - half_slope * rate**2) / inertia
 
     def _rates(self, state: Array) -> Array:
-        """d/dt of (theta, theta'); NaN for rotations at which the body can't roll, so that the step becomes shorter."""
+        """d/dt of (theta, theta'); NaN beyond the limits of the rolling, so that the integrator reduces its step."""
         theta, rate = state[..., 0], state[..., 1]
         low, high = self.rolling.limits
         finite = np.isfinite(theta) & np.isfinite(rate)
@@ -74,7 +74,7 @@ class RollingBody(Valid):
 
     @cached_property
     def _beyond(self) -> list[float]:
-        """The rotation [rad] of an integrator's stage that was farthest beyond the limits, if there was one."""
+        """The rotation [rad] of the integrator's stage farthest beyond the limits; None without such a stage."""
         return []
 
     @contextmanager
@@ -101,7 +101,7 @@ class RollingBody(Valid):
         """theta [rad] and theta' [rad/s] (times,) at times t >= 0 [s], any order."""
         t = sample_times("rolling body", t)
         until = float(t.max(initial=0.0)) or math.ulp(1.0)
-        # The motion is cached, since samples and searches need many times.
+        # The motion is cached, since samples and searches use many times.
         if not self._solutions or self._solutions[0][0] < until:
             with self._rolling_on():
                 self._solutions[:] = [(until, gauss.motion(self._rates, self.start, until, self._units))]
@@ -181,14 +181,14 @@ class RollingBody(Valid):
 
     @property
     def _short(self) -> float:
-        """A time [s] in which the state changes little, from rate, acceleration and stiffness at the start."""
+        """A time [s] in which the state changes little, by the rate, acceleration and stiffness at the start."""
         theta, rate = self.start
         pull = math.sqrt(abs(float(self.angular_acceleration(theta, rate))))
         return 1 / (max(abs(rate), pull, self._pace_of_rest) or 1.0)
 
     @property
     def _pace_of_rest(self) -> float:
-        """The rate [1/s] at which a body would leave an equilibrium at the start angle, or swing about it."""
+        """The rate [1/s] of the exponential growth or of the oscillation about an equilibrium at the start angle."""
         theta, _ = self.start
         mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
         return math.sqrt(abs(float(self.stiffness(theta))) / mass)

@@ -29,11 +29,12 @@ from reference.validators import Rule
 
 @dataclass(frozen=True)
 class RollingScene(Scene):
-    """A body on fixed ground: subclasses give the two curves; the centre of mass is the origin of the body's curve."""
+    """A body on fixed ground; subclasses define the curves. The body's curve has the centre of mass as its origin."""
 
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
-    # The contact is searched at every step, and bodies roll faster and faster downhill.
+    # Maximum number of durations: the contact is searched at every step, and bodies on an incline roll faster and
+    # faster.
     max_durations: ClassVar[float] = 2.0
 
     mass: Positive = 1.0  # kg
@@ -68,12 +69,12 @@ class RollingScene(Scene):
 
     @cached_property
     def hop(self) -> float | None:
-        """The time [s] from which the contact would have to pull; None if it is not within the duration."""
+        """The time [s] after which the contact would have to pull; None if it is after the duration."""
         return self.motion_law.hop(self.duration)
 
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
-        """The time [s] at which a contact with this friction slips or hops; later an engine may differ."""
+        """The time [s] of the first slip or hop of a contact with this friction; later an engine may differ."""
         return shared(RollingScene._until_slip, self)
 
     def _until_slip(self) -> float:

@@ -79,7 +79,7 @@ class CarAndTrailer(Scene):
 
     @cached_property
     def _tow(self) -> tuple[Tow, float, float]:
-        """The drawbar, the hitch's path length per metre of the rear axle's, and the offset of the heading [rad]."""
+        """The drawbar, the hitch's path length per metre of the rear axle's, and the heading's offset [rad]."""
         pace = math.hypot(1.0, self.hitch * self.curvature)
         direction = self.pose[2] - math.atan(self.hitch * self.curvature)
         heading = self.pose[2] + self.bend
@@ -117,7 +117,7 @@ class CarAndTrailer(Scene):
 
     @cached_property
     def _stretch(self) -> Antiderivative:
-        """int sqrt(M/M(0)) over the distance gone [m]."""
+        """int sqrt(M/M(0)) ds over the distance s [m] of the rear axle."""
         sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         shortest = min(self.length, 1 / (abs(self.curvature) + 1e-9))
         return Antiderivative(lambda r: np.sqrt(self.apparent_mass(sign * r) / first), shortest)
@@ -153,7 +153,7 @@ class CarAndTrailer(Scene):
         """Poses, twists and accelerations (times, 2, 3)."""
         headings = self._headings(way)
         per_way = self._per_way(headings)
-        turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # the headings' own rates along the way
+        turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # the rates of the headings per metre of the path
         bending = np.imag(self._per_way(turning)) / COMPLEX_STEP
         mass = np.sum(self._weights * per_way**2, axis=(-2, -1))
         speed_rate = -np.sum(self._weights * per_way * bending, axis=(-2, -1)) / mass * speed**2
