@@ -103,16 +103,10 @@ def split_error(
         _largest(pose_distance(mechanism, run.pose, declared)[early])
         for run in (own, *(setting.run for setting in smaller))
     ]
-    if not smaller:
-        return ErrorParts(softness, distances[0], float("nan"), float("nan"), False, model.declares)
-    return ErrorParts(
-        softness,
-        distances[0],
-        distances[-1],
-        smaller[-1].change.dt,
-        distances[-1] < HELPFUL_RATIO * distances[-2],
-        model.declares,
-    )
+    rest, smallest, falling = float("nan"), float("nan"), False
+    if smaller:
+        rest, smallest, falling = distances[-1], smaller[-1].change.dt, distances[-1] < HELPFUL_RATIO * distances[-2]
+    return ErrorParts(softness, distances[0], rest, smallest, falling, model.declares)
 
 
 def _largest(values: Array) -> float:
@@ -252,24 +246,14 @@ def check(
         on_progress(f"trying documented settings, {number + 1} of {count}")
 
     table = run_settings_sweep(reading, truth, samples, every, user_run, progress, plan, tolerance)
-    on_progress("telling softness from the step")
+    on_progress("separating softness and step")
     smaller = runs_by_step(table, table[0])[1 : 1 + SMALLER_STEPS]
-    parts = split_error(
-        reading, truth, user_run, smaller, QUICK_TOLERANCE if plan.quick else SOFT_TOLERANCE, judge.horizon
-    )
+    soft_tolerance = QUICK_TOLERANCE if plan.quick else SOFT_TOLERANCE
+    parts = split_error(reading, truth, user_run, smaller, soft_tolerance, judge.horizon)
+    judge_errors, opens = measure_errors(mechanism, truth, judge.looser), find_opening(mechanism, user_run)
+    duration = float(truth.t[-1])
     return CheckResult(
-        name,
-        reading,
-        float(truth.t[-1]),
-        tolerance,
-        agreement,
-        facts,
-        judge,
-        measure_errors(mechanism, truth, judge.looser),
-        find_opening(mechanism, user_run),
-        parts,
-        table,
-        has_tolerance,
+        name, reading, duration, tolerance, agreement, facts, judge, judge_errors, opens, parts, table, has_tolerance
     )
 
 

@@ -47,23 +47,13 @@ def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
     idle = undetermined(rows, mechanism.length_scale) if len(rows) else np.zeros(0, dtype=bool)
     names = tuple(name for name, which in zip(mechanism.row_names, idle, strict=True) if which)
     locked = freedoms[1] == 0 and not mechanism.rate.any()
-    return Facts(
-        len(mechanism.bodies),
-        len(mechanism.joints),
-        len(mechanism.forces),
-        mechanism.row_count,
-        freedoms,
-        mechanism.row_count - independent,
-        names,
-        _singular_instants(mechanism, motion, independent),
-        _dead_centres(mechanism, motion, freedoms[1]),
-        float(np.abs(motion.twist[..., 2]).max()),
-        _stiffest_mode(mechanism),
-        mechanism.length_scale,
-        mechanism.time_scale,
-        locked,
-        _locking_welds(mechanism) if locked else (),
-    )
+    counts = len(mechanism.bodies), len(mechanism.joints), len(mechanism.forces), mechanism.row_count
+    singular = _singular_instants(mechanism, motion, independent)
+    dead_centres = _dead_centres(mechanism, motion, freedoms[1])
+    rates = float(np.abs(motion.twist[..., 2]).max()), _stiffest_mode(mechanism)
+    scales = mechanism.length_scale, mechanism.time_scale
+    redundant, welds = mechanism.row_count - independent, _locking_welds(mechanism) if locked else ()
+    return Facts(*counts, freedoms, redundant, names, singular, dead_centres, *rates, *scales, locked, welds)
 
 
 def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
