@@ -90,7 +90,9 @@ class Isometry:
                     case Slot() | Skate() | Rod():
                         pass
                     case _:
-                        raise TypeError(f"no isometry of a {type(joint).__name__} is defined here")
+                        raise ValueError(
+                            f"joint {joint.name!r}: no isometry of a {type(joint).__name__} is defined here"
+                        )
                 row += joint.size
             return pose, twist, reaction
 
@@ -119,7 +121,7 @@ class Isometry:
             case Roll():
                 return replace(joint, rolling=self._rolling(joint.rolling, ground))
             case _:
-                raise TypeError(f"no isometry of a {type(joint).__name__} is defined here")
+                raise _undefined("joint", joint)
 
     def _force(self, force: ForceElement) -> ForceElement:
         match force:
@@ -135,7 +137,7 @@ class Isometry:
                 pull = self._place(*force.force, shifted=False)
                 return replace(force, second_point=self._inside(force.second_point), force=pull)
             case _:
-                raise TypeError(f"no isometry of a {type(force).__name__} is defined here")
+                raise _undefined("force", force)
 
     def _between(self, pair: Weld | TorsionSpring, angle: float) -> float:
         """A transformed angle of the second body relative to the first; the angle of the ground stays zero."""
@@ -157,6 +159,10 @@ class Isometry:
         if ground and (self.turn or any(self.shift)):
             first, theta = Placed(first, self.shift, self.turn), theta + self.turn
         return Rolling(second, first, theta, first_arc, second_arc)
+
+
+def _undefined(word: str, element: Joint | ForceElement) -> ValueError:
+    return ValueError(f"{word} {element.name!r}: no other description of a {type(element).__name__} is defined here")
 
 
 def _mirrored(curve: Curve, arc: float) -> tuple[Curve, float]:
@@ -215,14 +221,18 @@ def joints_swapped(mechanism: Mechanism) -> Described:
     The bodies of a slot, a skate or a roll have different roles and cannot be swapped.
     """
 
-    def swapped(joint: Any) -> Joint:
-        if isinstance(joint, Pin):
-            points = {"first_point": joint.second_point, "second_point": joint.first_point}
-            return replace(joint, first=joint.second, second=joint.first, **points)
-        if isinstance(joint, Drive):
-            numbers = {"turning_rate": -joint.turning_rate, "offset": -joint.offset}
-            return replace(joint, first=joint.second, second=joint.first, **numbers)
-        return joint
+    def swapped(joint: Joint) -> Joint:
+        match joint:
+            case Pin():
+                points = {"first_point": joint.second_point, "second_point": joint.first_point}
+                return replace(joint, first=joint.second, second=joint.first, **points)
+            case Drive():
+                numbers = {"turning_rate": -joint.turning_rate, "offset": -joint.offset}
+                return replace(joint, first=joint.second, second=joint.first, **numbers)
+            case Slot() | Skate() | Roll() | Rod() | Gear() | Weld():
+                return joint
+            case _:
+                raise _undefined("joint", joint)
 
     changed = replace(mechanism, joints=tuple(swapped(joint) for joint in mechanism.joints))
     signs = [-1.0 if isinstance(j, Pin | Drive) else 1.0 for j in mechanism.joints for _ in range(j.size)]
