@@ -57,7 +57,6 @@ ENGINE_WARNED = CheckSkipped("the engine warns that something is wrong")
 
 @by_identity(CACHED_MECHANISMS)
 def judge_motion(mechanism: Mechanism) -> Trajectory:
-    """The judge's motion, cached since many engines run the same mechanism."""
     return TRUTH.build(mechanism, MOTION_SPAN * mechanism.time_scale / MOTION_SAMPLES)(MOTION_SAMPLES, 1)
 
 
@@ -148,7 +147,7 @@ class _Case:
 
     @cached_property
     def forces(self) -> tuple[Array, ...]:
-        """Scales of reactions: the judge's reactions and the applied forces."""
+        """Scales of reactions."""
         acting = max(driving_force(self.mechanism, twist) for twist in self.truth.twist)
         arms = np.where(self.mechanism.is_angular, self.mechanism.length_scale, 1.0)
         return np.nan_to_num(self.truth.reaction), arms * max(acting, np.finfo(float).tiny)
@@ -291,7 +290,6 @@ class _Case:
         return ESTIMATE_MARGIN * float(max(estimates)) / self.size + ERROR_FLOORS["motion"]
 
     def of_estimate(self, run: Trajectory, parts: int) -> tuple[float, float]:
-        """(error, tolerance) of a run with an error estimate."""
         bound, missed = self.estimated(run), self.apart(run)["motion"]
         if missed > bound:
             bound = max(bound, NOISE_MARGIN * self.noise(run, parts)["motion"])
@@ -348,6 +346,5 @@ def check_claims(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> di
 
 @by_identity(CACHED_MECHANISMS)
 def _long_judge_motion(mechanism: Mechanism) -> Trajectory:
-    """The judge's motion, at all sampling instants of all runs."""
     samples = int(np.lcm.reduce(CLAIM_STEPS))
     return TRUTH.build(mechanism, CLAIM_SPAN * mechanism.time_scale / samples)(samples, 1)
