@@ -214,7 +214,7 @@ def _growth(
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-START_AGREEMENT = 1e-6  # Of the largest acceleration: rounding of two solutions, also with badly scaled masses.
+START_AGREEMENT = 1e-6  # Relative to the largest acceleration; it allows for rounding with badly scaled masses.
 # Accuracy of the reference motion, relative to the mechanism's speed and largest force; smaller values count as zero.
 ZERO_SHARE = 1e-9
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 # 1e-12 of the length. The direction of motion may turn by about this ratio near a crossing, so the error there is about
 # its square, 1e-8, and it decreases afterwards. On parallelograms errors were below 1e-9 with 1e-5, 1e-4 and 1e-3.
 NULL_SPACE_TOLERANCE = 1e-4
-CURVE_BODY_LIMIT = 40  # since every evaluation needs a singular value decomposition of all rows
+CURVE_BODY_LIMIT = 40  # The limit bounds the time: each evaluation decomposes all rows.
 
 
 def has_one_freedom(mechanism: Mechanism) -> bool:

@@ -115,7 +115,7 @@ def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
     for link in (*mechanism.joints, *mechanism.forces):
         if link.acts_along_line:
             first, second = (point(*end) for end in link.points)
-            if np.linalg.norm(second - first) < 3 * extent:  # a longer one represents a spring along a slide
+            if np.linalg.norm(second - first) < 3 * extent:  # A longer line represents a spring along a slide.
                 links.append([first.tolist(), second.tolist()])
     for name, points in body_points(mechanism, pose).items():
         centre = pose[mechanism.body_index(name)][:2]

@@ -61,7 +61,7 @@ def _versions(modules: frozenset[str], packages: frozenset[str], folders: tuple[
             distributions.update(_distributions().get(module, ()))
     for name in sorted(with_required(distributions | _rivals(packages))):
         versions[name] = metadata.version(name)
-    for name in packages:  # also packages of npm
+    for name in packages:  # These include packages of npm.
         with suppress(metadata.PackageNotFoundError):
             versions.setdefault(normalised(name), installed_version(name))
     return {**versions, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}

@@ -133,7 +133,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
             try:
                 target.rename(folder)
             except OSError:
-                if not folder.is_dir():  # else another process was faster
+                if not folder.is_dir():  # Otherwise another process has installed it.
                     raise
     except OSError as error:
         raise BadInput(f"{folder} can't be written ({error.strerror or error}): {remedy}") from None

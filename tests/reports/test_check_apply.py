@@ -39,7 +39,7 @@ def test_apply_changes_only_the_advised_settings_and_the_written_model_has_the_e
     assert written["error"] == pytest.approx(advised["error"], rel=1e-6)
     written = (tmp_path / "new.xml").read_text()
     assert advised["lines"][0] in written
-    for tag in ("<option", "<connect"):  # all else is unchanged
+    for tag in ("<option", "<connect"):  # All other text is unchanged.
         old, new = (
             next(line for line in document.splitlines() if tag in line and "--" not in line)
             for document in (text, written)
@@ -61,12 +61,14 @@ def test_settings_are_inserted_before_the_first_step_of_a_script(tmp_path, text,
     assert other.data["applied"]["error"] <= 1e-3
     text_before, block = (tmp_path / "y.py").read_text().split(BEGIN)
     assert f"{text_before.rstrip(' ')}{block.split(END)[1][1:]}" == text
-    if text is LOOP:  # and it runs as before, with the same times
+    if text is LOOP:  # The script still runs with the same times.
         places = [
             [float(part) for part in subprocess.check_output([sys.executable, tmp_path / name]).split()]
             for name in ("x.py", "y.py")
         ]
-        assert places[1] == pytest.approx(places[0], abs=0.1)  # ten steps of the first: they are of first order
+        assert places[1] == pytest.approx(
+            places[0], abs=0.1
+        )  # Ten steps replace one, since the error is of first order.
         assert places[1] != places[0]
 
 
@@ -124,12 +126,17 @@ def test_quick_tries_four_settings_and_all_tries_all_with_the_same_causes(tmp_pa
 def test_the_search_for_settings_ends_at_the_goal_or_with_the_last_documented_setting(tmp_path, monkeypatch):
     monkeypatch.setattr("reports.check.checked.SEARCH_BUDGET", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
-    for goal, result in ((1e-3, True), (1e-9, False)):  # of first order: the second takes a step of 4 ns
+    for goal, result in (
+        (1e-3, True),
+        (1e-9, False),
+    ):  # The method is of first order, so the second goal needs a step of 4 ns.
         answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)
         assert answer.fine == result
         assert (answer.data["advised"] is not None) == result
         assert ("none of the" in dict(answer.answer.facts)["advice"]) != result
-        assert sum(item["error"] <= goal for item in answer.data["tried"]) == result  # it ends with the first
+        assert (
+            sum(item["error"] <= goal for item in answer.data["tried"]) == result
+        )  # The search ends with the first sufficient setting.
 
 
 def test_only_a_given_tolerance_changes_the_exit_status(here, capfd, at_home):
@@ -153,7 +160,7 @@ def test_only_a_given_tolerance_changes_the_exit_status(here, capfd, at_home):
 
 def test_a_folder_of_models_gives_one_table_and_a_junit_test_for_each_model(here, capfd, at_home):
     for name, text in (("a.xml", FOUR_BAR), ("b.py", PENDULUM), ("c.xml", "<mujoco/>"), ("other.xml", "<svg/>")):
-        for folder in (here / ".models", here / ".models" / ".old"):  # within a folder hidden ones are left out
+        for folder in (here / ".models", here / ".models" / ".old"):  # Hidden files in a folder are left out.
             folder.mkdir(exist_ok=True)
             (folder / name).write_text(text)
     command = ("check", ".models", "--duration", 0.2, "--quick", "--tolerance", 1e-4, "--json")

@@ -60,7 +60,7 @@ class Pair(Scene):
 SCENE = Pair()
 MECHANISM = SCENE.mechanism()
 TRUTH = SCENE.motion(TIMES)
-KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # J, the truth's largest: at 0.3 s, beyond the horizon too
+KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # J; the largest exact kinetic energy, at 0.3 s, after the horizon
 
 
 def moved(**offsets: list[tuple[tuple[int, ...], float]]) -> Trajectory:
@@ -76,7 +76,7 @@ def errors(trajectory: Trajectory) -> dict[str, float]:
     return motion_errors(SCENE, MECHANISM, TRUTH, trajectory)
 
 
-# Two bodies at the three samples of the horizon: six distances and angles, one of them wrong.
+# Two bodies at three samples give six distances and angles, of which one is wrong.
 SIXTH = 1 / math.sqrt(6)
 MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
     "the truth": ({}, {}),
@@ -144,7 +144,7 @@ def test_samples_count_until_the_first_pose_or_twist_that_is_not_finite(name, va
     trajectory = moved(**{name: [((2, 1, 0), value)]})
     assert usable_samples(trajectory) == 2
     assert usable_samples(TRUTH) == 4
-    assert usable_samples(moved(reaction=[((0, 0), np.nan)])) == 4  # an unknown reaction is no failure
+    assert usable_samples(moved(reaction=[((0, 0), np.nan)])) == 4  # An unknown reaction is not a failure.
 
 
 def test_changes_of_assembly_count_relative_to_the_exact_motion():
@@ -153,7 +153,7 @@ def test_changes_of_assembly_count_relative_to_the_exact_motion():
 
     def flips(*sides: float) -> int:
         trajectory = replace(truth, pose=truth.pose.copy())
-        trajectory.pose[:, 0, 2] = sides  # the toy's other assembly is beyond 2 rad
+        trajectory.pose[:, 0, 2] = sides  # The toy has its other assembly above 2 rad.
         return branch_flips(scene, truth, trajectory)
 
     assert flips(0, 0, 0, 0) == 0
@@ -276,7 +276,7 @@ def test_every_field_of_a_measured_row_has_its_own_value():
 
 
 def test_the_exact_motion_is_computed_at_the_instants_of_the_engine():
-    late = INSTANTS * (1 + 1e-9)  # more than the rounding of steps
+    late = INSTANTS * (1 + 1e-9)  # This difference is larger than the rounding of steps.
     result = measure(Cell(DISC, Given(DISC.motion(late)), 1), repeat=False)
     assert result.angle < 1e-14 < 1e-3 * np.abs(DISC.motion(late).pose - DISC.motion(INSTANTS).pose).max()
 

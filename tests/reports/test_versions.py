@@ -63,7 +63,7 @@ def entry(version, error, scene="disc", outcome="finished", quantity="angle", en
 def test_changes_between_versions_are_found_from_the_errors():
     line = [("3.9.0", 1e-3), ("3.10.0", 2.9e-3), ("4.0.0", 9e-3), ("4.0.1", 1e-3), ("3.1.0", NAN)]
     entries = [entry(v, e, outcome="unsupported" if e != e else "finished") for v, e in line]
-    entries += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # both are rounding
+    entries += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # Both errors are rounding.
     entries += [entry("3.9.0", 1e-3, "breaks"), entry("4.0.0", NAN, "breaks", "torn")]
     assert [(earlier.version, later.version, later.scene, label) for earlier, later, label in changes(entries)] == [
         ("3.9.0", "4.0.0", "breaks", "WORSE"),
@@ -192,7 +192,7 @@ def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(installation.CACHE, str(tmp_path / "cache"))
     monkeypatch.setattr(sys, "path", list(sys.path))
-    for name in ("adapter", "scene"):  # of another test's folder
+    for name in ("adapter", "scene"):  # They are modules of another test's folder.
         monkeypatch.delitem(sys.modules, name, raising=False)
     yield tmp_path
     for name in ("adapter", "scene"):
@@ -220,7 +220,7 @@ def test_a_worse_or_slower_build_is_reported_and_its_output_is_contained(here, c
         invoke(["compare", "1.0", "2.0", *WITH_ADAPTER])
     out = capfd.readouterr().out
     assert "noise" not in out
-    assert out.count("WORSE") == 1  # a line a method
+    assert out.count("WORSE") == 1  # There is a line for each method.
     assert len(re.findall(r"^disc .* angle \[rad\]", out.partition("outcomes that are worse")[2], re.MULTILINE)) == 3
     with pytest.raises(Broken):
         invoke(["compare", "1.0", "2.0", *WITH_ADAPTER, "--json"])
@@ -231,11 +231,11 @@ def test_a_worse_or_slower_build_is_reported_and_its_output_is_contained(here, c
     assert (line["verdict"], document["status"]) == ("WORSE", 1)
     assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
-    assert not (here / "crosscheck-results").exists()  # A build may change: nothing of it is stored.
-    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # As from a notebook.
+    assert not (here / "crosscheck-results").exists()  # Rows of a build are not stored, since the build may change.
+    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # Call it as a notebook does.
     assert [column.trouble for column in comparison.columns] == ["", ""]
     assert comparison.complaint == ""
-    # A toy has the same cost whatever it takes.
+    # The stated cost of a toy does not depend on its run.
     assert invoke(["compare", "2.0", "1.0", *WITH_ADAPTER, "--cost", "1.5"]) == 0
     with pytest.raises(Broken, match=r"toyengine default takes 1\.00 times the CPU time, and --cost is 0\.9"):
         invoke(["compare", "2.0", "1.0", *WITH_ADAPTER, "--cost", "0.9"])
@@ -285,7 +285,7 @@ def test_a_version_is_installed_once_under_the_first_name_that_has_it(here, monk
     assert installed(("mujoco-core", "mujoco"), "3.6.0") == first
     assert pip.calls == ["mujoco-core==3.6.0", "mujoco==3.6.0"]
     assert first.is_relative_to(here / "cache")
-    assert first.name == "site-packages"  # so that rows depend on its version, and not on its files
+    assert first.name == "site-packages"  # With this name, rows depend on the version and not on the files.
     assert [path.name for path in first.parents[1].iterdir()] == ["mujoco-3.6.0"]
 
 
@@ -304,7 +304,7 @@ def test_a_version_that_can_not_be_installed_is_refused_in_one_line(printed, rea
         invoke(["versions", "pymunk", "7.2.5", "--scenes", "free_four_bar"])
     assert "\n" not in str(refused.value)
     assert refused.value.status == 2
-    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # before the wait
+    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # It is printed before pip runs.
     assert not (here / "crosscheck-results").exists()
 
 
