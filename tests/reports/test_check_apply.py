@@ -66,9 +66,8 @@ def test_settings_are_inserted_before_the_first_step_of_a_script(tmp_path, text,
             [float(part) for part in subprocess.check_output([sys.executable, tmp_path / name]).split()]
             for name in ("x.py", "y.py")
         ]
-        assert places[1] == pytest.approx(
-            places[0], abs=0.1
-        )  # Ten steps replace one, since the error is of first order.
+        # abs=0.1: ten times the step of x.py, since the error is of first order.
+        assert places[1] == pytest.approx(places[0], abs=0.1)
         assert places[1] != places[0]
 
 
@@ -126,17 +125,13 @@ def test_quick_tries_four_settings_and_all_tries_all_with_the_same_causes(tmp_pa
 def test_the_search_for_settings_ends_at_the_goal_or_with_the_last_documented_setting(tmp_path, monkeypatch):
     monkeypatch.setattr("reports.check.checked.SEARCH_BUDGET", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
-    for goal, result in (
-        (1e-3, True),
-        (1e-9, False),
-    ):  # The method is of first order, so the second goal needs a step of 4 ns.
+    for goal, result in ((1e-3, True), (1e-9, False)):  # The second goal would need a step of 4 ns.
         answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)
         assert answer.fine == result
         assert (answer.data["advised"] is not None) == result
         assert ("none of the" in dict(answer.answer.facts)["advice"]) != result
-        assert (
-            sum(item["error"] <= goal for item in answer.data["tried"]) == result
-        )  # The search ends with the first sufficient setting.
+        # The search ends with the first sufficient setting.
+        assert sum(item["error"] <= goal for item in answer.data["tried"]) == result
 
 
 def test_only_a_given_tolerance_changes_the_exit_status(here, capfd, at_home):
