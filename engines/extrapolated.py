@@ -64,8 +64,8 @@ class Extrapolated(EngineWrapper, Valid):
     """An engine that runs another engine at steps dt / level and extrapolates the runs to zero step.
 
     A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
-    of the step (L. F. Richardson, 1911). The `powers` are those of the inner engine's error. There is one fewer than
-    `levels`. A sample is NaN if one of the runs is not finite.
+    of the step (L. F. Richardson, 1911). The error of the inner engine has these powers. Their number is one less than
+    that of the `levels`. A sample is NaN if one of the runs is not finite.
 
     The `estimate` is the larger of two errors. The first is the `expected_error` from the differences between
     successive columns of Richardson's table, with the rounding of all steps. The second is the displacement that would

@@ -245,7 +245,7 @@ def pushes(tree: Tree, position: Array, velocity: Array) -> tuple[Array, Array]:
     """Poses (bodies, 3) [m, m, rad], and the loads of force elements on bodies (bodies, 3) [N, N, N m].
 
     Engines without springs, or with springs of another law, apply these loads before each step. Positions and
-    velocities (coordinates,) are tree coordinates [m, rad] and their rates. Results are NaN if any is not finite.
+    velocities (coordinates,) are tree coordinates [m, rad] and their rates. If one is not finite, results are NaN.
     """
     pose, twist = tree.instant(position, velocity)
     return pose, np.asarray(tree.mechanism.applied.on(pose, twist), dtype=np.float64)

@@ -1,7 +1,7 @@
 """Checks of a run: start, instants, CPU time, repeatability, and comparison with the exact motion.
 
 The comparison shows the instant to which a state belongs, the convergence order, the size of reactions, and whether
-forces act. An engine that ignores force elements has no other symptom.
+force elements act.
 """
 
 from __future__ import annotations
@@ -163,7 +163,7 @@ SMALL_STEP = 1e-3  # [s] motions of a few rad/s are parabolas to within a percen
 FIRST_STEPS = 3
 # In steps. The states of another instant are off by at least half a step, and the parabola by a hundredth.
 MAX_DELAY = 0.1
-# Relative to the largest reaction. The error of a wrong sign is 2, that of a first-order method is below 0.1.
+# Tolerance relative to the largest reaction. A wrong sign has an error of 2, and a first-order method below 0.1.
 REACTION_ERROR = 0.25
 
 

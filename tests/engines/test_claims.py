@@ -274,7 +274,7 @@ DRAWN = {
     "drake": ("pin", "weld", *ELEMENTS),
 }
 # Largest error relative to the displacement, by order, after 180 steps in a fifth of the time scale. The values are
-# measured, with a margin. Those of Box2D's soft joints are SOFT. The error of a wrong lever arm or sign is 1.
+# measured, with a margin. SOFT is the value of Box2D. The error of a wrong lever arm or sign is 1.
 JUDGED = {1: 2e-2, 2: 1e-5, 4: 1e-9}
 SOFT = 0.3
 
