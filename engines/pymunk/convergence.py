@@ -153,7 +153,7 @@ def step_spectral_radius(
 def stable_factor(mechanism: Mechanism, poses: Numbers, rho: Factor, rolls_are_contacts: bool = False) -> float:
     """`rho`, or a larger factor for which `iterations_for` gives enough iterations for stability at all `poses`.
 
-    The factor is larger than `rho` only if some rows correct no gap. It is LARGEST_FACTOR if stability needs more than
+    The factor is larger than `rho` only if some rows correct no gap. The result is LARGEST_FACTOR if it needs more than
     STARTUP_WORK iterations.
     """
     corrected, needed = corrects_gap(mechanism, rolls_are_contacts), iterations_for(rho)

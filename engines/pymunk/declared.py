@@ -57,7 +57,7 @@ WHOLE_GAP_ORDER = ConvergenceOrder(1, gap=2, differences=1)
 SINGLE_ROW = ConvergenceOrder(1, gap=2, slip=EXACT, differences=1)
 # The initial half kick makes every step symmetric in time.
 SYMMETRIC_ORDER = ConvergenceOrder(2, differences=1)
-# The orders if a step corrects a fraction of a gap, if it corrects the whole gap, and for a leapfrog, which does too.
+# The three orders are for steps that correct a fraction of a gap, for steps that correct all of it, and for a leapfrog.
 ORDERS: Mapping[Kind, tuple[ConvergenceOrder, ConvergenceOrder, ConvergenceOrder]] = {
     "contact": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),
     "set velocity": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),

@@ -1,1 +1,1 @@
-"""The construction of each kind of joint in MuJoCo."""
+"""The constructions of joints in MuJoCo, with one module for each kind."""

@@ -1,1 +1,1 @@
-"""What pymunk holds each joint by: one file a joint."""
+"""The constructions of joints in pymunk, with one module for each kind."""
