@@ -96,7 +96,6 @@ class Valid:
                 values[name] = taken
 
     def _owner(self) -> str:
-        """The name of an object in a message: its class, and its field `name` if it has one."""
         name = self.__dict__.get("name")
         return f"{type(self).__name__} {short_repr(name)}" if isinstance(name, str) else type(self).__name__
 

@@ -59,8 +59,6 @@ class _ForceOfTwo(BetweenTwo, ForceFacts):
 
 
 class _Dissipative(_ForceOfTwo):
-    """Base of elements that dissipate energy and store none."""
-
     @property
     def dissipates(self) -> bool:
         return True

@@ -162,7 +162,6 @@ class Scene(Valid, ABC):
         return self._branch_of(np.asarray(pose))
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """See `branch_of`, which has checked the poses."""
         return np.zeros(pose.shape[:-2], dtype=int)
 
     @property
@@ -276,7 +275,6 @@ def _replaced(scene: Scene, values: Mapping[str, Any]) -> Scene:
 
 
 def _readings(text: str) -> list[Any]:
-    """The possible values of a text: a Python literal, and the text itself."""
     try:
         return [ast.literal_eval(text.strip()), text]
     except (ValueError, SyntaxError, MemoryError, RecursionError):
@@ -284,7 +282,6 @@ def _readings(text: str) -> list[Any]:
 
 
 def _changed_fields(scene: Scene) -> dict[str, Any]:
-    """The fields whose values differ from their class's defaults."""
     defaults = {field.name: field.default for field in fields(scene)}  # type: ignore[arg-type]
     return {
         name: getattr(scene, name)
@@ -298,7 +295,6 @@ def _name(base: str, values: Mapping[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    """A value with all its digits, without spaces."""
     if isinstance(value, tuple):
         return f"({','.join(map(_short, value))})"
     text = repr(value) if not isinstance(value, str) else value

@@ -121,7 +121,6 @@ class Trajectory(Valid):
         return {"t": self.t, **{name: self.pose[:, body, index] for name, body, index in names}}
 
     def _repr_html_(self) -> str:
-        """Poses at a few instants, for a notebook."""
         columns = self.table()
         samples = np.unique(np.linspace(0, len(self.t) - 1, TABLE_ROWS).round().astype(int))
         head = "".join(f"<th>{name}</th>" for name in columns)

@@ -63,7 +63,6 @@ class Validator:
 
 
 def _scalar(value: Any) -> Any:
-    """The element of an array without dimensions; any other value unchanged."""
     return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
 
 
@@ -99,7 +98,6 @@ def _text(value: Any) -> Any:
 
 
 def _array(value: Any) -> Any:
-    """Real numbers in one shape as an array of floats."""
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):  # ragged, or an object that numpy can't convert
@@ -118,7 +116,6 @@ def _numbers(value: Any) -> Any:
 
 
 def _any_analytic(value: Any) -> Any:
-    """Real or complex numbers, for functions that are differentiated by a complex step."""
     if isinstance(value, np.ndarray | np.number):
         return value if value.dtype.kind in "iufc" else INVALID
     return value if isinstance(value, complex) or _number(value) is not INVALID else _array(value)
@@ -189,7 +186,6 @@ def _choice(choices: Sequence[Any]) -> Validator:
 
 
 def _sequence(arguments: Sequence[Any]) -> Validator:
-    """A tuple of any length with members of one type, or a tuple with one type for each member."""
     has_any_length = arguments[-1] is Ellipsis
     validators = [validator_of(member) for member in arguments if member is not Ellipsis]
     validates, count = [validator.validate for validator in validators], len(validators)

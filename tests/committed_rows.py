@@ -27,7 +27,6 @@ def _lines(name: str) -> list[dict[str, str]]:
 
 @cache
 def _stored() -> dict[tuple[str, ...], list[dict[str, str]]]:
-    """Errors and timings, joined; by scene, engine, variant, samples and steps per sample."""
     lines: dict[tuple[str, ...], list[dict[str, str]]] = {}
     for errors, timings in zip(_lines("errors.csv"), _lines("timings.csv"), strict=True):
         line = errors | timings

@@ -54,14 +54,12 @@ class Equations:
         return np.array([x + c * at[0] - s * at[1], y + s * at[0] + c * at[1]])
 
     def _between(self, q: Array, joint: Any) -> Array:
-        """The vector from the anchor of the first body to the anchor of the second."""
         return self._point(q, joint.b, joint.anchor_b) - self._point(q, joint.a, joint.anchor_a)
 
     def _turned(self, q: Array, joint: Any) -> Array:
         return self._pose(q, joint.b)[2] - self._pose(q, joint.a)[2]
 
     def _measured(self, q: Array, joint: Any) -> list[Array]:
-        """The coordinates that a joint constrains, or the length or angle of a spring."""
         match joint:
             case PivotJoint():
                 return [*self._between(q, joint)]
@@ -102,9 +100,7 @@ class Equations:
         return out
 
     def _held(self, q: Array, speed: Array, wanted: Array) -> Array:
-        """The speeds or accelerations with the smallest change in the norm of the masses and with the rates
-        `wanted`.
-        """
+        """The speeds or accelerations with the smallest change, by mass, that give the rows the rates `wanted`."""
         root = np.sqrt(self.inverse)
         rows = self._slopes(self._rows, q)
         return speed + root * np.linalg.lstsq(rows * root, wanted - rows @ speed, rcond=1e-11)[0]

@@ -20,7 +20,7 @@ TAIL = 4
 # Halvings of a panel around a jump of the integrand, after which the panel is shorter than rounding.
 MOST_HALVINGS = 46
 
-# Chebyshev points of the first kind, and the matrix from values at these points to the series (coefficients, points).
+# Chebyshev points of the first kind. The matrix (coefficients, points) converts values at these points to the series.
 _GAUSS_POINTS = np.cos(np.pi * (np.arange(PANEL_POINTS) + 0.5) / PANEL_POINTS)
 _TO_COEFFICIENTS = (2.0 / PANEL_POINTS) * np.cos(
     np.outer(np.arange(PANEL_POINTS), np.pi * (np.arange(PANEL_POINTS) + 0.5) / PANEL_POINTS)
@@ -60,7 +60,6 @@ class Antiderivative:
         return not np.iscomplexobj(self._function(np.zeros(1)))
 
     def _extend(self, end: float) -> None:
-        """Add panels up to `end`; halve those whose series has not converged."""
         wanted = np.ceil((end - self._edges[-1]) / self._panel)
         if not wanted <= MOST_PANELS:
             raise OverflowError(f"an integral to {end:.3g} in panels of {self._panel:.3g} has too many of them")

@@ -30,7 +30,8 @@ MAX_STEPS = 20_000
 # The first step, relative to the time in which the start state changes by itself and its unit. The value is small for
 # any motion, since a step may grow tenfold. SciPy's choice would depend on the unit of time.
 FIRST_STEP = 1e-3
-# After this number of steps, the integration stops if it would need too many even with steps LENGTHENED times as long.
+# Number of steps after which the integration checks whether it can end. It stops if even steps LENGTHENED times as long
+# would need more than the maximum number of steps.
 ENOUGH_STEPS = 200
 LENGTHENED = 100.0
 
@@ -110,7 +111,7 @@ def units_of_motion(rates: Rates, start: ArrayLike, coordinate: float = 1.0) -> 
 def error_of(
     rates: Rates, start: ArrayLike, t: ArrayLike, tolerance: float = STEP_TOLERANCE, unit: ArrayLike = 1.0
 ) -> Array:
-    """The change (times,) of the motion when its tolerance is 10 times coarser: a bound on its own error."""
+    """A bound (times,) on the error of the motion: its change if the tolerance is 10 times larger."""
     t = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(t.max()), math.ulp(1.0))
     fine, coarse = (integrate(rates, start, until, factor * tolerance, unit)(t) for factor in (1.0, COARSER))

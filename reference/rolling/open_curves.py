@@ -105,7 +105,6 @@ class LogSpiral(Curve):
 
     @property
     def _stretch(self) -> float:
-        """Arc per radius."""
         return math.hypot(1, self.growth) / self.growth
 
     def _refuse_pole(self, arc: ArrayLike) -> None:

@@ -81,7 +81,6 @@ class Traced(Curve):
 
     @cached_readonly
     def _knots(self) -> tuple[Array, Array]:
-        """Arcs and unwrapped tangent angles at the points."""
         start, width = self.parameters[:-1, None], np.diff(self.parameters)[:, None]
         pieces = np.sum(WEIGHTS * self.speed_of(start + 0.5 * width * (NODES + 1)), axis=-1) * width[:, 0] / 2
         tangent = self._tangents(self.parameters)
@@ -97,7 +96,6 @@ class Traced(Curve):
 
     @cached_property
     def _bends(self) -> tuple[float, float]:
-        """The extrema of the curvature at the points and in the middle between them."""
         curvature = self.curvature_of(
             np.concatenate([self.parameters, 0.5 * (self.parameters[1:] + self.parameters[:-1])])
         )

@@ -195,7 +195,6 @@ class Nudge:
 
 
 def _nudge_part(part: Part, random: np.random.Generator, scalars: tuple[str, ...] = ()) -> Part:
-    """A body, joint or force with its vectors and these scalars changed by at most one rounding."""
     changed: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type]
         value = getattr(part, field.name)
@@ -283,7 +282,6 @@ def _outcome(row: Measurement, old: Old, same: bool) -> Check:
 
 
 def _reactions(row: Measurement, old: Old) -> tuple[Check, ...]:
-    """A check that fails if the engine reports the reactions of fewer constraint rows than before."""
     missing = old.reaction_rows - row.reaction_rows
     sentence = f" constraint rows without a reaction; {old.reaction_rows} had one"
     return (Check(CHANGE, "reaction_rows", float(missing), 0.0, sentence=sentence),) if missing > 0 else ()

@@ -89,7 +89,6 @@ def stepped(
 
 
 def _samples(scene: Scene) -> int:
-    """The number of samples until the end of the comparison."""
     return max(1, math.floor(min(scene.duration, scene.comparable_until) / scene.spacing * (1 + 1e-12)))
 
 

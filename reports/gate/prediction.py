@@ -217,7 +217,6 @@ def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Predict
 
 
 def _sampled(scene: Scene) -> Trajectory:
-    """The true motion at DIFFERENCES + 1 instants of the time that is compared."""
     return scene.motion(np.linspace(0.0, min(scene.horizon, scene.comparable_until), DIFFERENCES + 1))
 
 

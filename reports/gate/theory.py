@@ -150,7 +150,6 @@ def theory(
 def _reason_not_applicable(
     quantity: str, outcome: Outcome, prediction: Prediction, promise: ConvergenceOrder | NotDeclared
 ) -> str:
-    """The reason why the check does not apply; empty if the check applies."""
     if not outcome.comparable:
         return "the run is not comparable, so its outcome alone is checked"
     if not prediction.is_defined(quantity):
@@ -192,7 +191,6 @@ def _promised(
 
 
 def _without_promise(quantity: str, prediction: Prediction, rows: Sequence[Measurement]) -> Bound:
-    """The bound from the difference between the errors at the method's steps."""
     known = [error for row in rows if not math.isnan(error := getattr(row, quantity))]
     most = SATURATED if quantity == "reaction" else prediction.largest_comparable(quantity)
     differ = ROOM_UNPROMISED * (max(known) - min(known)) if len(known) > ENOUGH else math.inf

@@ -107,7 +107,6 @@ class CurveMotion(Valid):
         return BarAngles(*(np.asarray(value, dtype=float) for value in values))
 
     def _closed(self, angle: Any) -> Any:
-        """theta, and beta and phi of the closed loop by Newton's method in extended precision."""
         l1, l2, l3 = (np.longdouble(length) for length in self.four_bar.lengths)
         x, y = (np.longdouble(value) for value in self.four_bar.ground)
         theta, beta, phi = angle
@@ -116,7 +115,7 @@ class CurveMotion(Valid):
             gap_y = l1 * np.sin(theta) + l2 * np.sin(beta) - l3 * np.sin(phi) - y
             between = np.sin(phi - beta)
             if abs(float(between)) < 1e-6:
-                break  # at a crank limit, where Newton's matrix is singular; the start in double precision is used
+                break  # Newton's matrix is singular at a crank limit, so the start in double precision is used
             beta, phi = (
                 beta - (gap_x * np.cos(phi) + gap_y * np.sin(phi)) / (l2 * between),
                 phi - (gap_x * np.cos(beta) + gap_y * np.sin(beta)) / (l3 * between),

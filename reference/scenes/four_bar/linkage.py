@@ -185,7 +185,6 @@ def _adaptive(solver: Any, times: Array, out: Array, limit: int) -> tuple[int, s
 def _fixed(
     odes: Callable[[float, Array], Array], nodes: tuple[float, ...], times: Array, out: Array, every: int, limit: int
 ) -> tuple[int, str]:
-    """Steps of Euler's method or the classical Runge-Kutta method."""
     evaluations, weights = 0, np.array([1.0] if len(nodes) == 1 else [1 / 6, 1 / 3, 1 / 3, 1 / 6])
     for index in range(1, times.size):
         angles, step = out[index - 1], (times[index] - times[index - 1]) / every

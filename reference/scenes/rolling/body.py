@@ -174,7 +174,6 @@ class RollingBody(Valid):
 
     @property
     def _level(self) -> bool:
-        """Whether the ground is straight and, to rounding, at a right angle to gravity."""
         along = abs(float(np.asarray(self.gravity) @ self.rolling.contact(self.rolling.theta).tangent))
         flat = self.rolling.ground.curvature_range == (0.0, 0.0)
         return flat and along <= 4 * np.finfo(float).eps * math.hypot(*self.gravity)
