@@ -123,7 +123,7 @@ class ExtraEngine(Engine, Valid):
 
     library: ClassVar[tuple[str, str] | None] = None
     apart: ClassVar[str] = ""
-    capability: ClassVar[Capability]
+    capability: ClassVar[Capability]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     @property
     def missing(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Literal, assert_never
+from typing import Any, Literal, assert_never
 
 import mujoco
 import numpy as np
@@ -21,7 +21,6 @@ from engines import (
     Size,
     Unsupported,
 )
-from engines.capability import Capability
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco import declared
 from engines.mujoco.joints.links import DriveBy, RodBy
@@ -64,7 +63,7 @@ class MuJoCo(Engine, Valid):
 
     name = "mujoco"
     packages = ("mujoco-core",)
-    capability: ClassVar[Capability] = MUJOCO_CAPABILITY
+    capability = MUJOCO_CAPABILITY
 
     variant: Name
     integrator: Integrator = "Euler"

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from typing import Literal
 
 import pymunk
 from pymunk.constraints import PivotJoint
 
 from engines import ConvergenceOrder, Enforcement, Engine, EngineWrapper, Instant, NotDeclared, Regularisation, Run
-from engines.capability import Capability
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
 from engines.pymunk import declared
@@ -61,7 +60,7 @@ class Pymunk(Engine, Valid):
 
     name = "pymunk"
     packages = ("pymunk",)
-    capability: ClassVar[Capability] = PYMUNK_CAPABILITY
+    capability = PYMUNK_CAPABILITY
 
     variant: Name
     iterations: Count | Literal["contraction"] = SHIPPED_ITERATIONS

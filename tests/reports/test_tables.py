@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from engines import Enforcement, Regularisation, mujoco, pymunk
+from engines.capability import Capability, Lack
 from engines.lagrange import loading
 from engines.pymunk.methods import SKATE_POINT
 from engines.registry import OTHERS
@@ -62,7 +63,7 @@ class HeldBy(Toy):
 
 
 class WithoutPin(Toy):
-    absent_elements = frozenset({Pin})
+    capability = Capability("toy", (), lacks={Pin: Lack("toy has no pin", "https://its.documentation")})
 
 
 class OtherDisc(Disc):
