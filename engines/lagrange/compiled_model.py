@@ -109,6 +109,15 @@ def open_warning(t: float) -> RunWarning:
     return RunWarning(text, "gap", time=t)
 
 
+def singular_warning(t: float) -> RunWarning:
+    """The warning of a run of fixed steps in which a step ended beside a singular position at t [s]."""
+    text = (
+        f"lagrange: a step ends beside a singular position at {t:.6g} s, where rounding becomes motion; "
+        "a longer step may have a smaller error"
+    )
+    return RunWarning(text, "rank", time=t)
+
+
 @dataclass
 class CompiledModel:
     """The records of a mechanism, and the compiled functions that use them."""
@@ -161,7 +170,7 @@ class CompiledModel:
         status = self.system.status
         warnings = [] if np.isnan(status["open_from"]) else [open_warning(float(status["open_from"]))]
         if tolerance is None:
-            return tuple(warnings)
+            return (*warnings, *([] if np.isnan(status["singular_at"]) else [singular_warning(status["singular_at"])]))
         if not np.isnan(status["stopped_at"]):
             warnings.append(stopped_warning(tolerance, float(status["stopped_at"])))
         if not np.isnan(status["stiff_from"]):

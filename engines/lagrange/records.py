@@ -89,10 +89,11 @@ ROLLING_RECORD = _record(
 # stopped_at [s]: the time at which steps became too small or too many
 # stiff_from [s]: the time from which the motion is stiff
 # open_from [s]: the time of the first projection that did not converge
+# singular_at [s]: the time of the first projection with a pivot below NEARLY_SINGULAR
 # rounding: the change of speeds by rounding, in units of the mechanism's speed
 STATUS_RECORD = _record(
     "missing_roll accepted_steps selection",
-    "missing_angle smallest_pivot factor_pivot stopped_at stiff_from rounding open_from",
+    "missing_angle smallest_pivot factor_pivot stopped_at stiff_from rounding open_from singular_at",
 )
 
 
@@ -139,7 +140,7 @@ class StepStorage(NamedTuple):
 def new_status() -> Any:
     status = np.zeros(1, STATUS_RECORD)[0]
     status["missing_roll"], status["smallest_pivot"] = -1, 1.0
-    status["stopped_at"] = status["stiff_from"] = status["open_from"] = np.nan
+    status["stopped_at"] = status["stiff_from"] = status["open_from"] = status["singular_at"] = np.nan
     return status
 
 

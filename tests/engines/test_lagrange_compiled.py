@@ -17,6 +17,7 @@ from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
 from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, TorsionDamper
 from reference.mechanism import Mechanism
+from reference.scenes.catalogue import scene
 from reference.scenes.four_bar.scenes import FreeFourBar
 from reference.scenes.pendulum.scenes import HundredLinks, LongPendulum
 from reference.scenes.rolling.scenes import RollingEllipse
@@ -164,3 +165,11 @@ def test_a_stiff_motion_is_reported():
     turned = replace(damped, forces=(TorsionDamper("stop", None, damped.bodies[2].name, 1e5),))
     assert Lagrange(tolerance=1e-8).build(turned, 0.01)(10, 1).warnings
     assert Lagrange(tolerance=1e-8).build(scene.mechanism(), 0.01)(10, 1).warnings == ()
+
+
+def test_fixed_steps_that_end_beside_a_singular_position_have_a_warning():
+    parallelograms = scene("n_four_bar_10")
+    for steps_per_sample, is_near in ((4, False), (64, True)):
+        step = parallelograms.spacing / steps_per_sample
+        run = Lagrange("dop853").build(parallelograms.mechanism(), step)(20, steps_per_sample)
+        assert any("beside a singular position" in warning for warning in run.warnings) == is_near

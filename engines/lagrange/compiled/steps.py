@@ -12,6 +12,8 @@ from engines.lagrange.compiled.joints import set_bodies, set_equations
 from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
 from engines.lagrange.records import CLOSED, RowLaw, RowSelection
 
+# A projection onto rows with a smaller pivot turns the rounding of gaps, 1e-16, into velocities of 1e-16 / pivot.
+NEARLY_SINGULAR = 1e-8
 # A constant, since numba would compile `solve` a second time for the literal 0.
 NO_CORRECTIONS = np.int64(0)
 
@@ -66,6 +68,9 @@ def project(system, pose, twist, t, iterations, pose_unit):
     solve(system, 1 if keeps_factor else 0)
     for k in range(moving):
         twist[k] += system.change[k]
+    is_singular = system.status.factor_pivot < NEARLY_SINGULAR and system.constants.dependent == 0
+    if is_singular and math.isnan(system.status.singular_at):
+        system.status.singular_at = t
 
 
 @merged
