@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -75,14 +75,16 @@ FORCES_BY_LAW = {engine.name for engine in ENGINES if engine.capability and engi
 @pytest.fixture
 def with_rack(monkeypatch):
     _widen(monkeypatch, "Joint", Joint | Rack)
-    yield Mechanism((WHEEL, SLEDGE), (AXLE, Rack("rack", "wheel", "sledge")), (0.0, 0.0))
+    rack: Any = Rack("rack", "wheel", "sledge")  # not in the union that the type checker sees
+    yield Mechanism((WHEEL, SLEDGE), (AXLE, rack), (0.0, 0.0))
     checks._validators_of_fields.cache_clear()
 
 
 @pytest.fixture
 def with_friction(monkeypatch):
     _widen(monkeypatch, "ForceElement", ForceElement | Friction)
-    yield Mechanism((WHEEL,), (AXLE,), (0.0, 0.0), (Friction("brake", None, "wheel"),))
+    friction: Any = Friction("brake", None, "wheel")
+    yield Mechanism((WHEEL,), (AXLE,), (0.0, 0.0), (friction,))
     checks._validators_of_fields.cache_clear()
 
 
