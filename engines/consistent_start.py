@@ -29,10 +29,10 @@ TAKES_PART = 1e-6
 MOST_NAMED = 4
 # Largest gap of positions that were printed with six digits, in rad or relative to the largest coordinate.
 PRINTED = 1e-5
-FAR = 100.0  # largest coordinate for PRINTED, in lengths of the mechanism
-MOST_ITERATIONS = 20  # of Newton's method, which converges in three unless a position is singular
-DIGITS = 1e-6  # largest rounding of an angle [rad]: a hundredth of the usual tolerance
-FASTEST = 1e150  # largest velocity whose square is a floating point number [m/s, rad/s]
+FAR = 100.0  # Largest coordinate for PRINTED, in lengths of the mechanism.
+MOST_ITERATIONS = 20  # Of Newton's method, which converges in three unless a position is singular.
+DIGITS = 1e-6  # Largest rounding of an angle [rad]: a hundredth of the usual tolerance.
+FASTEST = 1e150  # Largest velocity whose square is a floating point number [m/s, rad/s].
 
 
 class OpenStart(InvalidMechanism):

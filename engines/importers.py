@@ -32,8 +32,8 @@ class Importer:
         return self.reading(model, ReadingTerms(without)).mechanism
 
 
-mujoco = Importer("engines.mujoco")  # MJCF, URDF, a mujoco.MjModel
-pymunk = Importer("engines.pymunk")  # script.py[:NAME], a pymunk.Space
+mujoco = Importer("engines.mujoco")  # MJCF, URDF, a mujoco.MjModel.
+pymunk = Importer("engines.pymunk")  # script.py[:NAME], a pymunk.Space.
 
 
 def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:

@@ -163,8 +163,8 @@ class WarpModel:
             return np.full_like(position, np.nan)
         data.qpos.assign(position[None].astype(np.float32))
         data.qvel.assign(velocity[None].astype(np.float32))
-        for _ in range(2):  # the first computes the velocities that the second one's velocity term needs
-            data.qacc_warmstart.zero_()  # in single precision the solver's answer depends on its first guess
+        for _ in range(2):  # The first computes the velocities that the second one's velocity term needs.
+            data.qacc_warmstart.zero_()  # In single precision the solver's answer depends on its first guess.
             self.mujoco_warp.forward(self.held, data)
         return data.qacc.numpy()[0].astype(np.float64)
 

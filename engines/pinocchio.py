@@ -49,8 +49,8 @@ Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4"]
 # Regularisation of the proximal solver. It is far above rounding, since the rows out of the plane are empty.
 PROXIMAL_REGULARISATION = 1e-10
-PROXIMAL_TOLERANCE = 1e-14  # residual at which the proximal solver ends
-PROXIMAL_ITERATIONS = 20  # largest number of its iterations; a four-bar linkage needs two
+PROXIMAL_TOLERANCE = 1e-14  # Residual at which the proximal solver ends.
+PROXIMAL_ITERATIONS = 20  # Largest number of its iterations; a four-bar linkage needs two.
 # CPU time [s] of an evaluation with three bodies.
 PINOCCHIO_EVALUATION_COST = 6e-6
 # The engine's constraint for a joint that closes a loop; "" for joints that are never such a constraint.
@@ -123,9 +123,9 @@ class PinocchioModel:
         mechanism = self.mechanism
         self.model = pinocchio.Model()
         self.model.gravity.linear = np.array([*mechanism.gravity, 0.0])
-        self.joints: dict[int | None, int] = {None: 0}  # the last joint of each body; the ground is the universe
-        self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # from the centre of mass to that joint [m]
-        self.address: list[int] = [0] * tree.coordinates  # index of each tree coordinate in the engine's vectors
+        self.joints: dict[int | None, int] = {None: 0}  # The last joint of each body; the ground is the universe.
+        self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # From the centre of mass to that joint [m].
+        self.address: list[int] = [0] * tree.coordinates  # Index of each tree coordinate in the engine's vectors.
         self._add_children(None)
         self.data = self.model.createData()
         self.loops = pinocchio.StdVec_RigidConstraintModel()

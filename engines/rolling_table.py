@@ -26,9 +26,9 @@ from reference.rolling.kinematics import Rolling
 # are not amplified by differentiation. A basis of powers is accurate, because the coefficients fall.
 NODES = 6
 COARSEST = 2 * math.pi / 256
-FINEST = 2 * math.pi / 2**17  # a finer table has more cells than a motion uses
-CELLS_IN_BLOCK = 16  # cells that are computed together
-EXAMINED = np.arange(-32, 32, 4)  # indices, relative to the cell of the start, of the cells that determine the width
+FINEST = 2 * math.pi / 2**17  # A finer table has more cells than a motion uses.
+CELLS_IN_BLOCK = 16  # Cells that are computed together.
+EXAMINED = np.arange(-32, 32, 4)  # Indices, relative to the cell of the start, of the cells that determine the width.
 # Rotations in a cell as shares of its half width: the middle and the nodes, and the points between nodes.
 SAMPLED = np.append(0.0, np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES))
 COMPARED = np.cos(math.pi * np.arange(NODES + 1) / NODES)
@@ -109,8 +109,8 @@ class RoundOnLine:
         self._start = rolling.theta
         self._middle, radius = body
         start = rolling.contact(rolling.theta)
-        self._along = radius * rect(1.0, float(start.tangent_angle))  # displacement of the centre per radian
-        self._radius = -1j * self._along  # from the contact to the centre
+        self._along = radius * rect(1.0, float(start.tangent_angle))  # Displacement of the centre per radian.
+        self._radius = -1j * self._along  # From the contact to the centre.
         self._point = complex(*start.point)
 
     @property

@@ -68,8 +68,8 @@ class Recorded:
 
     pose: Array  # (samples + 1, bodies, 3)
     twist: Array
-    acceleration: Array  # NaN for unknown values
-    stepping: float  # s
+    acceleration: Array  # NaN for unknown values.
+    stepping: float  # s.
     inertias: Array
     gravity: Array
     warnings: tuple[RunWarning, ...] = ()

@@ -35,8 +35,8 @@ Count = Annotated[int, from_to(1, LARGEST_COUNT)]
 Sign = Annotated[int, Rule(lambda value: value in (1, -1), "that is 1 or -1")]
 Signs = Annotated[ArrayLike, Rule(lambda value: np.all(np.abs(value) == 1), "each 1 or -1")]
 Name = Annotated[str, Rule(lambda value: value.strip() and value.isprintable(), "that is not empty and can be printed")]
-Numbers = Annotated[Floats, NOT_FINITE]  # NaN for unknown values
-Complexes = Annotated[Any, COMPLEX]  # array arguments of functions that are differentiated by a complex step
+Numbers = Annotated[Floats, NOT_FINITE]  # NaN for unknown values.
+Complexes = Annotated[Any, COMPLEX]  # Array arguments of functions that are differentiated by a complex step.
 AnyComplexes = Annotated[Complexes, NOT_FINITE]
 Times = Annotated[
     ArrayLike,

@@ -13,8 +13,8 @@ from typing import Any, ClassVar, Self
 from reference.checks import Name, Valid
 
 Vector = tuple[float, float]
-Pair = tuple[str | None, str | None]  # names of two bodies, None for the ground
-Place = tuple[str | None, Vector]  # the name of a body, None for the ground, and a point in its frame [m]
+Pair = tuple[str | None, str | None]  # Names of two bodies, None for the ground.
+Place = tuple[str | None, Vector]  # The name of a body, None for the ground, and a point in its frame [m].
 UnitExponents = Mapping[str, tuple[int, int]]
 
 

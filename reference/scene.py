@@ -36,7 +36,7 @@ from reference.validators import INVALID, Floats, of_shape, validator_of
 # Approximate time between samples [s]. Every step of a sweep is a fraction of this time, so all steps have the same
 # sample times.
 SAMPLE_SPACING = 1e-2
-Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # NaN after the end of an engine's run
+Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # NaN after the end of an engine's run.
 # The annotations of a scene's times.
 TIME_ANNOTATIONS = (("duration", Positive), ("horizon", Positive), ("samples", Count))
 

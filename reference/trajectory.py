@@ -20,18 +20,18 @@ TABLE_ROWS = 6
 ADAPTER_PREFIX = "ours:"
 
 WarningKind = Literal[
-    "contact",  # a contact is lost, or rotates too far in a step
-    "gap",  # a joint is open
-    "known fault",  # this release or this engine is known to compute wrong motions
-    "lost",  # the motion ends: numbers are not finite, a joint cannot be satisfied, or a solver fails
-    "rank",  # rows of joints are nearly dependent, so that rounding moves them
-    "rate limit",  # a velocity was limited
-    "reactions",  # reactions are unknown or have a large error
-    "residual",  # a solver left a residual
-    "start reactions",  # only the reactions at the start have an error
-    "stiff",  # stability, not accuracy, determines the steps
-    "unconverged",  # solver iterations leave a part of the slowest mode at every step
-    "unresolved",  # the error may exceed the method's claim
+    "contact",  # A contact is lost, or rotates too far in a step.
+    "gap",  # A joint is open.
+    "known fault",  # This release or this engine is known to compute wrong motions.
+    "lost",  # The motion ends: numbers are not finite, a joint cannot be satisfied, or a solver fails.
+    "rank",  # Rows of joints are nearly dependent, so that rounding moves them.
+    "rate limit",  # A velocity was limited.
+    "reactions",  # Reactions are unknown or have a large error.
+    "residual",  # A solver left a residual.
+    "start reactions",  # Only the reactions at the start have an error.
+    "stiff",  # Stability, not accuracy, determines the steps.
+    "unconverged",  # Solver iterations leave a part of the slowest mode at every step.
+    "unresolved",  # The error may exceed the method's claim.
     "other",
 ]
 

@@ -18,9 +18,9 @@ from reference.trajectory import Trajectory
 Array = NDArray[np.float64]
 Status = Literal["holds", "fails", "not supported", "not asked"]
 
-CHECK_STEP = 0.01  # step of most runs [s]
-CHECK_SAMPLES = 8  # samples of most runs
-FEWEST_WORDS = 4  # least number of words in a reason
+CHECK_STEP = 0.01  # Step of most runs [s].
+CHECK_SAMPLES = 8  # Samples of most runs.
+FEWEST_WORDS = 4  # Least number of words in a reason.
 
 
 class Fails(AssertionError):

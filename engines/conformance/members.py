@@ -287,8 +287,8 @@ def _odd() -> dict[str, Mechanism]:
         for name, x, spin in (("left", 0.0, 0.5), ("right", 1.0, 0.5), ("left", 0.0, 0.0))
     )
     hinge, other = Pin("hinge", None, "left", nowhere, nowhere), Pin("other", None, "right", (1.0, 0.0), nowhere)
-    beside = Body("right", 1.0, 0.1, (1.0, 0.0, 0.0), (0.0, 0.5, 0.5))  # moves with the left body's rotation
-    rim = Roll("rim", "left", "right", rolling(Circle(0.5), 0.5, 0.0, 0.0))  # on the left body's rim
+    beside = Body("right", 1.0, 0.1, (1.0, 0.0, 0.0), (0.0, 0.5, 0.5))  # Moves with the left body's rotation.
+    rim = Roll("rim", "left", "right", rolling(Circle(0.5), 0.5, 0.0, 0.0))  # On the left body's rim.
     wheel, axle = Body("left", 1.0, 0.1, (0.0, 0.3, 0.0)), Pin("hinge", None, "left", (0.0, 0.3), nowhere)
     level, upright = (
         Slot(name, None, "left", nowhere, line, nowhere) for name, line in (("x", 0.0), ("y", math.pi / 2))

@@ -38,8 +38,8 @@ from reference.mechanism import Body, Mechanism
 
 # Relative rounding of the start, which is converted to the engine's coordinates and back.
 START_ROUNDING = 1e-12
-CLOCK_RESOLUTION = 1e-4  # resolution of an engine's clock of CPU time [s]
-COARSE_SAMPLING = (2, 3)  # samples, and steps between them
+CLOCK_RESOLUTION = 1e-4  # Resolution of an engine's clock of CPU time [s].
+COARSE_SAMPLING = (2, 3)  # Samples, and steps between them.
 # Relative difference of runs with the same steps: rounding, which extrapolation multiplies by up to 100.
 SAMPLING_TOLERANCE = 1e-9
 # Relative difference of reactions: an iterative solver begins with another guess, and single precision rounds the
@@ -216,7 +216,7 @@ def _declared_order(subject: CheckedEngine, world: World) -> ConvergenceOrder:
 
 
 STEP_DIVISORS = (1, 3, 9)
-ORDER_SPACING, ORDER_SAMPLES = 0.02, 3  # [s] between samples, and their number
+ORDER_SPACING, ORDER_SAMPLES = 0.02, 3  # [s] between samples, and their number.
 # Factor on the error that the order predicts from larger steps, for the next power of the step and the sampling.
 ORDER_MARGIN = 2.5
 # Relative error by rounding, or of a drive whose rate is held by an inertia 10^8 times the mechanism's.

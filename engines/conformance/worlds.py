@@ -21,8 +21,8 @@ from reference.rolling.curves import Circle, Line, Ring
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 
-G = 10.0  # m/s^2, downwards
-MASS, INERTIA = 2.0, 0.3  # kg and kg m^2 of most bodies
+G = 10.0  # m/s^2, downwards.
+MASS, INERTIA = 2.0, 0.3  # kg and kg m^2 of most bodies.
 WEIGHT = MASS * G
 ORIGIN = (0.0, 0.0)
 
@@ -96,8 +96,8 @@ def _swinging_bar() -> World:
 
 def _swinging_parallelogram() -> World:
     """Two equal cranks and a coupler that stays parallel to the ground: a loop with one degree of freedom."""
-    crank, base, arm = 0.5, 0.8, 0.2  # arm: distance of a crank's centre of mass from its pivot
-    heavy, light = 1.5, 1.0  # masses of the coupler and a crank
+    crank, base, arm = 0.5, 0.8, 0.2  # Arm: distance of a crank's centre of mass from its pivot.
+    heavy, light = 1.5, 1.0  # Masses of the coupler and a crank.
     inertia = 2 * (0.05 + light * arm**2) + heavy * crank**2
     frequency = math.sqrt((2 * light * arm + heavy * crank) * G / inertia)
 

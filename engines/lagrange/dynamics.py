@@ -48,12 +48,12 @@ class Embedded(NamedTuple):
     The thirteenth stage is at the end of the step. The last three stages are for dense output.
     """
 
-    stages: Array  # (16, 16)
-    weights: Array  # (12,)
-    nodes: Array  # (16,)
-    third: Array  # (13,) weights of the error estimate of order 3
-    fifth: Array  # (13,) weights of the error estimate of order 5
-    dense: Array  # (4, 16)
+    stages: Array  # (16, 16).
+    weights: Array  # (12,).
+    nodes: Array  # (16,).
+    third: Array  # (13,) weights of the error estimate of order 3.
+    fifth: Array  # (13,) weights of the error estimate of order 5.
+    dense: Array  # (4, 16).
 
 
 def _embedded() -> Embedded:

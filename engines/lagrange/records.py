@@ -48,8 +48,8 @@ CLOSED = 1e-9
 # Least ratio of the inverse inertia of a soft row under the constraints of the rigid rows to that of the row alone. It
 # is used if the soft row depends on the rigid rows.
 LEAST_INVERSE_INERTIA = 0.1
-CELL_SIZE = 20  # number of complex numbers in a cell of `engines.rolling_table`
-MOST_STAGES = 16  # largest number of stages of a method, including those for dense output
+CELL_SIZE = 20  # Number of complex numbers in a cell of `engines.rolling_table`.
+MOST_STAGES = 16  # Largest number of stages of a method, including those for dense output.
 
 
 def _record(integers: str, reals: str = "", complexes: str = "", unsigned: str = "") -> np.dtype[np.void]:
@@ -100,25 +100,25 @@ STATUS_RECORD = _record(
 class System(NamedTuple):
     """The records of a mechanism, the arrays of its row system, and the status of the calls."""
 
-    constants: Any  # a CONSTANT_RECORD
-    status: Any  # a STATUS_RECORD
-    bodies: Records  # (bodies + 1,)
+    constants: Any  # A CONSTANT_RECORD.
+    status: Any  # A STATUS_RECORD.
+    bodies: Records  # (bodies + 1,).
     joints: Records
     forces: Records
     terms: Records  # terms of couplings, then terms of coupled forces
     rolls: Records
     cells: NDArray[np.complex128]  # (cells, CELL_SIZE) of all tables
     rows: Records
-    equations: Records  # (rows,)
-    ends: Records  # two ends of each row, further ends of couplings, and one unused end
+    equations: Records  # (rows,).
+    ends: Records  # Two ends of each row, further ends of couplings, and one unused end.
     further_ends: Records
     products: Records
-    matrix: Reals  # J M^-1 J^T in its envelope, overwritten by its factor
-    inverse_pivots: Reals  # (rows,)
-    right: Reals  # (rows,) right side
-    reaction: Reals  # (rows,)
-    residual: Reals  # (rows,)
-    change: Reals  # (coordinates,) M^-1 J^T reaction
+    matrix: Reals  # J M^-1 J^T in its envelope, overwritten by its factor.
+    inverse_pivots: Reals  # (rows,).
+    right: Reals  # (rows,) right side.
+    reaction: Reals  # (rows,).
+    residual: Reals  # (rows,).
+    change: Reals  # (coordinates,) M^-1 J^T reaction.
 
 
 class StepStorage(NamedTuple):

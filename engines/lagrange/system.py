@@ -44,8 +44,8 @@ from reference.rolling.roll import Roll
 from reference.rows import rank
 
 Integers = NDArray[np.int64]
-Numbers = Mapping[str | None, int]  # number of each body by name; None is the ground
-Fields = dict[str, str]  # attribute of a joint or force for each field of its record
+Numbers = Mapping[str | None, int]  # Number of each body by name; None is the ground.
+Fields = dict[str, str]  # Attribute of a joint or force for each field of its record.
 
 JOINT_FIELDS: dict[type, tuple[JointKind, Fields]] = {
     Pin: (JointKind.PIN, {}),

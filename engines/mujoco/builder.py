@@ -78,8 +78,8 @@ class ModelBuilder:
     user_rows: list[UserRowJoint] = field(default_factory=list)
     hook_makers: list[HookMaker] = field(default_factory=list)
     driven: list[DrivenCoordinate] = field(default_factory=list)
-    start_rates: dict[str, float] = field(default_factory=dict)  # rates at t = 0 of joints that are no tree coordinate
-    clocks: list[str] = field(default_factory=list)  # joints that no force can accelerate, besides tree coordinates
+    start_rates: dict[str, float] = field(default_factory=dict)  # Rates at t = 0 of joints that are no tree coordinate.
+    clocks: list[str] = field(default_factory=list)  # Joints that no force can accelerate, besides tree coordinates.
     # The name of each auxiliary body, and the index of the mechanism's body from which it was split.
     split_bodies: list[tuple[str, int]] = field(default_factory=list)
 

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SAME_ROW = 1e-9  # tolerance relative to the norm of a row: the rounding of sums along a chain of ten bodies
-ROUNDING_TOLERANCE = 1e-28  # tolerance of the solver with which its error is rounding: about the square of rounding
-NO_VELOCITY_TERMS = "without velocity terms"  # the name of the law of MJX for loops and rods
+SAME_ROW = 1e-9  # Tolerance relative to the norm of a row: the rounding of sums along a chain of ten bodies.
+ROUNDING_TOLERANCE = 1e-28  # Tolerance of the solver with which its error is rounding: about the square of rounding.
+NO_VELOCITY_TERMS = "without velocity terms"  # The name of the law of MJX for loops and rods.
 
 
 def instants(
@@ -102,12 +102,12 @@ class DeclaredState:
     mechanism: Mechanism
     model: MuJoCoModel
     data: Any
-    pose: Array  # (bodies, 3)
-    twist: Array  # (bodies, 3)
-    free: Array  # accelerations without joints (bodies, 3)
-    aimed: Array  # J a without its velocity term (rows,)
-    compliance: Array  # a matrix C (rows, rows), where C C^T is the compliance of the rows
-    by_solver: Array  # a mask (rows,) of the rows that MuJoCo's solver enforces, and not the tree
+    pose: Array  # (bodies, 3).
+    twist: Array  # (bodies, 3).
+    free: Array  # Accelerations without joints (bodies, 3).
+    aimed: Array  # J a without its velocity term (rows,).
+    compliance: Array  # A matrix C (rows, rows), where C C^T is the compliance of the rows.
+    by_solver: Array  # A mask (rows,) of the rows that MuJoCo's solver enforces, and not the tree.
 
     @classmethod
     def of(
@@ -213,9 +213,9 @@ class _JointRows:
     model: MuJoCoModel
     data: Any
     joint: Joint
-    numbers: list[int]  # indices of MuJoCo's rows
-    rows: Array  # MuJoCo's rows (size, nv)
-    in_tree: Array  # the mechanism's rows of the joint (size, nv)
+    numbers: list[int]  # Indices of MuJoCo's rows.
+    rows: Array  # MuJoCo's rows (size, nv).
+    in_tree: Array  # The mechanism's rows of the joint (size, nv).
 
     @property
     def beside(self) -> list[int]:

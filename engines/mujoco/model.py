@@ -51,18 +51,20 @@ MAX_MASS_RATIO = 1e13
 class MuJoCoModel:
     mechanism: Mechanism
     tree: Tree
-    compiled: Any  # mujoco.MjModel
-    address: list[int]  # the index of each tree coordinate in qpos and qvel
+    compiled: Any  # mujoco.MjModel.
+    address: list[int]  # The index of each tree coordinate in qpos and qvel.
     driven: tuple[DrivenCoordinate, ...]
     drive: DriveBy
     hooks: Hooks = field(default_factory=Hooks)
     rows: int = 0  # the number of scalar constraints that forces enforce, without drives
     has_user_rows: bool = False
-    start_rates: Mapping[int, float] = field(default_factory=dict)  # by index in qvel, for coordinates outside the tree
-    unit: float = 1.0  # kg, the unit of mass of the compiled model, and so of its forces and torques
-    split_bodies: tuple[tuple[str, int], ...] = ()  # as in ModelBuilder
-    spec: Any = None  # mujoco.MjSpec
-    softening: float = 1.0  # the factor on MuJoCo's compliances
+    start_rates: Mapping[int, float] = field(
+        default_factory=dict
+    )  # By index in qvel, for coordinates outside the tree.
+    unit: float = 1.0  # kg, the unit of mass of the compiled model, and so of its forces and torques.
+    split_bodies: tuple[tuple[str, int], ...] = ()  # As in ModelBuilder.
+    spec: Any = None  # mujoco.MjSpec.
+    softening: float = 1.0  # The factor on MuJoCo's compliances.
 
     @contextmanager
     def callback_installed(self) -> Iterator[None]:

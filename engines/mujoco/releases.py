@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from reference.trajectory import RunWarning
 
-KNOWN_WRONG = "known to be wrong"  # part of the warning
-UPPER_CASE = ("RK4", "PGS", "CG")  # words that are in upper case in MJCF
+KNOWN_WRONG = "known to be wrong"  # Part of the warning.
+UPPER_CASE = ("RK4", "PGS", "CG")  # Words that are in upper case in MJCF.
 MIXED_CASE = {"EULER": "Euler", "NEWTON": "Newton"}
 # The flag that solves all rows in one system. Before 3.3.6 MuJoCo had no such flag, and islands were off by default.
 NO_ISLANDS = int(getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0))

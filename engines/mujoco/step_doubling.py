@@ -23,11 +23,11 @@ MAX_RATIO = 1 / 8  # the largest ratio of differences for successive step sizes 
 class StepDoubling:
     """Differences of the poses of runs with other steps from those with steps h; NaN after the failure of a run."""
 
-    counts: Counts  # the number (times,) of steps h before each pose; contains both neighbours of every odd number
-    watched: Counts  # indices of the even counts at which the order is checked
-    unit: Array  # the unit of each component of a pose (3,)
-    double: Array  # differences (even counts, bodies, 3) of the run with steps 2h
-    half: Array | None = None  # differences (times, bodies, 3) of the run with steps h / 2
+    counts: Counts  # The number (times,) of steps h before each pose; contains both neighbours of every odd number.
+    watched: Counts  # Indices of the even counts at which the order is checked.
+    unit: Array  # The unit of each component of a pose (3,).
+    double: Array  # Differences (even counts, bodies, 3) of the run with steps 2h.
+    half: Array | None = None  # Differences (times, bodies, 3) of the run with steps h / 2.
 
     @cached_property
     def difference(self) -> Array:

@@ -20,8 +20,8 @@ STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
 
 @dataclass(frozen=True)
 class _Spring(Valid, ABC):
-    softening: ClassVar[float] = 1.0  # factor on the compliances
-    impedance: ClassVar[tuple[float, float, float, float, float]] = STIFFEST  # solimp
+    softening: ClassVar[float] = 1.0  # Factor on the compliances.
+    impedance: ClassVar[tuple[float, float, float, float, float]] = STIFFEST  # solimp.
 
     @abstractmethod
     def time_constant(self, mechanism: Mechanism, dt: float) -> float:

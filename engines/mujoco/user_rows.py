@@ -40,7 +40,7 @@ ROW_KINDS = ("skate", "slot", "rod", "roll")
 SKATE, SLOT, _, ROLL = range(len(ROW_KINDS))
 # A plan is an array with a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION numbers for the
 # motion of each link and of the ground. The following names are indices in these parts.
-LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD: time [s] by which the pose is predicted
+LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD: time [s] by which the pose is predicted.
 # SLIDE, ACROSS and ROTATION are columns, or -1 for none. START_X, START_Y and START_ANGLE are the pose at t = 0.
 PARENT, SLIDE, ACROSS, ROTATION, START_X, START_Y, START_ANGLE = range(7)
 ARM_X, ARM_Y, ANCHOR_X, ANCHOR_Y, DIRECTION_X, DIRECTION_Y, LINK = range(7, 14)

@@ -64,10 +64,10 @@ Factor = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1"
 class _System(NamedTuple):
     """The rows that impulses enforce, at one or more poses. Rows of prescribed motions are left out."""
 
-    matrix: Array  # A (..., rows, rows)
-    starts: list[int]  # first row of the block of each pymunk constraint
-    jacobian: Array  # (..., rows, 3 bodies), zero in prescribed coordinates
-    indices: list[int]  # indices of these rows among the rows of the mechanism
+    matrix: Array  # A (..., rows, rows).
+    starts: list[int]  # First row of the block of each pymunk constraint.
+    jacobian: Array  # (..., rows, 3 bodies), zero in prescribed coordinates.
+    indices: list[int]  # Indices of these rows among the rows of the mechanism.
 
 
 @by_identity()

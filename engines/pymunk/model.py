@@ -58,8 +58,8 @@ CONSTRAINT_ROWS: Mapping[type[constraints.Constraint], int] = {
 @dataclass(frozen=True)
 class Settings:
     iterations: int
-    error_bias: float  # per unit of time
-    unit: float  # s, the unit of time of the model
+    error_bias: float  # Per unit of time.
+    unit: float  # s, the unit of time of the model.
     skate: SkateConstruction
     roll: RollConstruction
     slot: SlotConstruction = "exact"

@@ -85,11 +85,11 @@ class Recording:
     The engine stores velocities together with the positions at t. They are those at t, or at t + dt/2 in a leapfrog.
     """
 
-    pose: Array  # (times, bodies, 3) at t
-    after: Array  # velocities (times, bodies, 3) that the engine stores with the positions at t
-    before: Array  # velocities (times - 1, bodies, 3) one step earlier, from the second sample on
-    stepping: float  # CPU time [s]
-    stopped: RunWarning | None = None  # the reason why stepping ended early; all later values are NaN
+    pose: Array  # (times, bodies, 3) at t.
+    after: Array  # Velocities (times, bodies, 3) that the engine stores with the positions at t.
+    before: Array  # Velocities (times - 1, bodies, 3) one step earlier, from the second sample on.
+    stepping: float  # CPU time [s].
+    stopped: RunWarning | None = None  # The reason why stepping ended early; all later values are NaN.
 
 
 def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup: Sequence[int] = ()) -> Recording:

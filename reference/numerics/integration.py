@@ -50,8 +50,8 @@ class Integrated:
     """The knots and the rates of a motion; a call with times (times,) [s] returns states (times, states)."""
 
     rates: Rates
-    times: Array  # (knots,)
-    states: Array  # (knots, states)
+    times: Array  # (knots,).
+    states: Array  # (knots, states).
 
     def __call__(self, t: ArrayLike) -> Array:
         t = np.atleast_1d(np.asarray(t, dtype=float))

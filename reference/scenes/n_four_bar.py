@@ -146,8 +146,8 @@ class NFourBar(Scene):
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
         first, second = cranks[..., :-1], cranks[..., 1:]
         parallel = 2 - np.cos(couplers) - np.cos(first - second)
-        folded_left = 2 - np.cos(first) - np.cos(couplers - second)  # the first crank's top on the second pivot
-        folded_right = 2 + np.cos(second) + np.cos(couplers - first)  # the second crank's top on the first pivot
+        folded_left = 2 - np.cos(first) - np.cos(couplers - second)  # The first crank's top on the second pivot.
+        folded_right = 2 + np.cos(second) + np.cos(couplers - first)  # The second crank's top on the first pivot.
         return np.where(np.all(parallel <= np.minimum(folded_left, folded_right), axis=-1), 1, -1)
 
 

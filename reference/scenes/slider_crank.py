@@ -279,8 +279,8 @@ class SlottedLever(PlacedScene):
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         theta = self.angle + self.rate * times
         crank = self.crank * np.exp(1j * theta)
-        reach = self.distance + crank  # from the lever's pivot to the pin; its real part is positive
-        turning, bending = self.rate * 1j * crank / reach, -(self.rate**2) * crank / reach  # P'/reach and P''/reach
+        reach = self.distance + crank  # From the lever's pivot to the pin; its real part is positive.
+        turning, bending = self.rate * 1j * crank / reach, -(self.rate**2) * crank / reach  # P'/reach and P''/reach.
         angle, rate = np.angle(reach), turning.imag
         # log(reach)'' = P''/reach - (P'/reach)^2, and its imaginary part is the angle's.
         acceleration = (bending - turning**2).imag

@@ -32,10 +32,10 @@ STEPWISE: tuple[SkateBy, ...] = ("predicted tendon",)
 # The coefficients along and across the blade. The first direction of friction is along a capsule, as a maintainer of
 # MuJoCo explains for skating on ice in github.com/google-deepmind/mujoco/issues/67.
 BLADE_FRICTION = (1e-5, 10.0)
-TILT = 0.5  # rad, the tilt of a blade, so that only its lower end touches the ground
-STANDARD_GRAVITY = 9.81  # m/s^2, the acceleration that defines the weight on the ground
-BISECTIONS = 40  # of the depth at which the contact force equals the weight
-MAX_DOUBLINGS = 60  # of the length of a blade
+TILT = 0.5  # rad, the tilt of a blade, so that only its lower end touches the ground.
+STANDARD_GRAVITY = 9.81  # m/s^2, the acceleration that defines the weight on the ground.
+BISECTIONS = 40  # Of the depth at which the contact force equals the weight.
+MAX_DOUBLINGS = 60  # Of the length of a blade.
 # The direct form of solref needs a stiffness that is not zero. This stiffness gives 1e-12 m/s^2 at a gap of 1 m.
 NO_STIFFNESS = -1e-12
 

@@ -16,8 +16,8 @@ from reference.couplings import Coupling, Term
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 
 Array = NDArray[np.float64]
-Ends = tuple[int, int, Array, Array]  # two groups, and a point [m] of each in the world
-WeightedJoints = Sequence[tuple[int, float]]  # joints of the model with their factors in a sum of coordinates
+Ends = tuple[int, int, Array, Array]  # Two groups, and a point [m] of each in the world.
+WeightedJoints = Sequence[tuple[int, float]]  # Joints of the model with their factors in a sum of coordinates.
 EQUALITY, TENDON = mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_TENDON
 # The smallest ratio of armature and inertia with which a hinge counts as driven. The acceleration of such a hinge is
 # smaller than that of a free one by this ratio, and a tenth of the accepted difference from the judge's accelerations.

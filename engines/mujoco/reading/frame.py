@@ -19,7 +19,7 @@ from engines.reading import MOST_BODIES, Names, Note, refuse
 from reference.joints import Body, Joint, Vector
 
 Array = NDArray[np.float64]
-PLANAR = 1e-9  # smaller components are rounding, relative to a unit vector or an inertia
+PLANAR = 1e-9  # Smaller components are rounding, relative to a unit vector or an inertia.
 # The largest tilt [rad] of an axis that counts as normal to the plane. Rounding to six digits tilts an axis by 2e-6,
 # and 1.5708 for a right angle by 4e-6. Tilts add up along chains. The tilt of 1.57 for a right angle, 8e-4, is refused.
 MAX_TILT = 1e-4
@@ -33,9 +33,9 @@ FREE, BALL, SLIDE, HINGE = (
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    across: Array  # along x
-    up: Array  # along y
-    normal: Array  # angles are positive about it
+    across: Array  # Along x.
+    up: Array  # Along y.
+    normal: Array  # Angles are positive about it.
 
     @cached_property
     def both(self) -> Array:
@@ -138,10 +138,10 @@ def _normal_to_slides(model: Any, data: Any, slides: Any) -> Array:
 class Groups:
     """Groups of MuJoCo bodies that are fixed to each other. A group is a body of the mechanism."""
 
-    of: Array  # the group of each MuJoCo body (nbody,), -1 for the ground
-    roots: tuple[int, ...]  # the MuJoCo body of each group that has the joints
-    centres: Array  # centres of mass (groups, 3) [m] in the frames of the roots
-    signs: Array  # 1 for a joint (njnt,) whose axis is along the normal, -1 for the opposite direction
+    of: Array  # The group of each MuJoCo body (nbody,), -1 for the ground.
+    roots: tuple[int, ...]  # The MuJoCo body of each group that has the joints.
+    centres: Array  # Centres of mass (groups, 3) [m] in the frames of the roots.
+    signs: Array  # 1 for a joint (njnt,) whose axis is along the normal, -1 for the opposite direction.
 
 
 def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body, ...]]:

@@ -102,9 +102,9 @@ class OwnMuJoCo:
 
     planar: PlanarModel  # a model with joints that move exactly in the plane
     mechanism: Mechanism
-    users: Any  # the model that runs, with the joints of the user
-    tilt: float = 0.0  # rad, the largest difference of the axes in these two models
-    urdf: bool = False  # whether the file is URDF without an element for MuJoCo, which the lines to copy then contain
+    users: Any  # The model that runs, with the joints of the user.
+    tilt: float = 0.0  # rad, the largest difference of the axes in these two models.
+    urdf: bool = False  # Whether the file is URDF without an element for MuJoCo, which the lines to copy then contain.
     suspects: Mapping[str, str] = field(default_factory=dict)
     classes: bool = False  # whether the file may have classes of defaults, which a new default does not change
 

@@ -41,8 +41,8 @@ class _EqualityRows:
     equality: int
     ideal: list[int]  # indices of the mechanism's rows
     blocks: tuple[tuple[slice, slice, Array], ...]
-    lengths: Array  # the norms (ideal,) of the columns of the matrices
-    solimp: Array  # (5,)
+    lengths: Array  # The norms (ideal,) of the columns of the matrices.
+    solimp: Array  # (5,).
     stiffness: float
     damping: float
 
@@ -130,9 +130,9 @@ def impedance_of(solimp: Array, gap: float) -> float:
 
 FLAGGED_ELEMENTS = ("contact", "limit", "frictionloss", "equality", "actuation", "spring", "damper", "gravity")
 UNFLAGGED_ELEMENTS = ("armature", "fluid", "forcelimit", "sleep")
-TIED_STEPS = 5.0  # the time constant of stiff loops in steps, as in the method TUNED
-DEFAULT_EQUALITY = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # MuJoCo's default solref and solimp
-STEP_COUNT, FURTHER_STEP_COUNT = 6, 11  # how many steps are tried; each is half of the previous step
+TIED_STEPS = 5.0  # The time constant of stiff loops in steps, as in the method TUNED.
+DEFAULT_EQUALITY = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # MuJoCo's default solref and solimp.
+STEP_COUNT, FURTHER_STEP_COUNT = 6, 11  # How many steps are tried; each is half of the previous step.
 
 
 def switch_off(model: Any, element: str) -> None:

@@ -42,9 +42,9 @@ class ImportedSpace:
     forces: list[ForceElement] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
     names: Names = field(default_factory=Names)
-    prescribed: list[str] = field(default_factory=list)  # names of the joints of prescribed motions
-    pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # force and torque by index in `moving`
-    suspects: dict[str, str] = field(default_factory=dict)  # reason why a joint is ideal with no step size, by name
+    prescribed: list[str] = field(default_factory=list)  # Names of the joints of prescribed motions.
+    pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # Force and torque by index in `moving`.
+    suspects: dict[str, str] = field(default_factory=dict)  # Reason why a joint is ideal with no step size, by name.
     labels: dict[constraints.Constraint, str] = field(default_factory=dict)
 
     def name_of(self, body: pymunk.Body) -> str | None:

@@ -64,8 +64,8 @@ class OwnPymunk:
     imported: ImportedSpace
     mechanism: Mechanism
     dt: float
-    step_is_assumed: bool  # the space has not been stepped, and the user gave no step
-    ahead: bool = False  # the user's script advances the velocities by half a step before the first step
+    step_is_assumed: bool  # The space has not been stepped, and the user gave no step.
+    ahead: bool = False  # The user's script advances the velocities by half a step before the first step.
     engine: str = "pymunk"
     has_soft_joints: bool = False
     # The violation of joints depends on steps and iterations, and pymunk declares no law for it.

@@ -37,13 +37,13 @@ class RollingScene(Scene):
     # faster.
     max_durations: ClassVar[float] = 2.0
 
-    mass: Positive = 1.0  # kg
-    start_angle: float = 0.0  # rad
-    start_rate: float = 4.0  # rad/s
-    ground_arc: float = 0.0  # m, of the contact at the start
-    gravity: Vector = (0.0, -GRAVITY)  # m/s^2
-    duration: Positive = 2.0  # s
-    friction: Positive = 1.0  # friction coefficient of a real contact
+    mass: Positive = 1.0  # kg.
+    start_angle: float = 0.0  # rad.
+    start_rate: float = 4.0  # rad/s.
+    ground_arc: float = 0.0  # m, of the contact at the start.
+    gravity: Vector = (0.0, -GRAVITY)  # m/s^2.
+    duration: Positive = 2.0  # s.
+    friction: Positive = 1.0  # Friction coefficient of a real contact.
 
     @abstractmethod
     def body_curve(self) -> Curve:
@@ -128,8 +128,8 @@ class RollingDisc(RollingScene):
 
     name: ClassVar[str] = "rolling_disc"
 
-    radius: Positive = 0.4  # m
-    eccentricity: float = 0.15  # m, from the centre of mass to the disc's centre
+    radius: Positive = 0.4  # m.
+    eccentricity: float = 0.15  # m, from the centre of mass to the disc's centre.
 
     def body_curve(self) -> Curve:
         return Circle(self.radius, (self.eccentricity, 0.0))
@@ -145,8 +145,8 @@ class RollingCam(RollingScene):
 
     name: ClassVar[str] = "rolling_cam"
 
-    radius: Positive = 0.4  # m, mean of the support function
-    cosines: tuple[float, ...] = (0.05, 0.0, 0.02)  # m, its harmonics
+    radius: Positive = 0.4  # m, mean of the support function.
+    cosines: tuple[float, ...] = (0.05, 0.0, 0.02)  # m, its harmonics.
     sines: tuple[float, ...] = (0.0, 0.02)
     gyration: Positive = 0.28  # m, radius of gyration
 
@@ -219,8 +219,8 @@ class DiscInHole(RollingScene):
 
     name: ClassVar[str] = "disc_in_hole"
 
-    hole: Positive = 1.0  # m, radius
-    clearance: Clearance = 0.1  # of the hole's radius
+    hole: Positive = 1.0  # m, radius.
+    clearance: Clearance = 0.1  # Of the hole's radius.
     start_rate: float = 1.0
     gravity: Vector = (0.0, 0.0)
     duration: Positive = 1.0
