@@ -31,9 +31,9 @@ from reports.write.provenance import still_installed
 
 # (scene, method, samples, steps per sample): identifies a cell in all runs, even if its settings have changed.
 Identity = tuple[str, str, int, int]
-IDENTITY = ("scene", "engine", "variant", "samples", "every")  # columns of errors.csv that define a cell
-TIMINGS_FILE = "timings.csv"  # beside errors.csv; its comments hold the versions (`reports.write.provenance.versions`)
-MOST_FILES_NAMED = 5  # number of files that a message names
+IDENTITY = ("scene", "engine", "variant", "samples", "every")  # Columns of errors.csv that define a cell.
+TIMINGS_FILE = "timings.csv"  # Beside errors.csv; its comments hold the versions (`reports.write.provenance.versions`).
+MOST_FILES_NAMED = 5  # Number of files that a message names.
 
 
 class BadBaseline(ValueError):

@@ -38,9 +38,9 @@ from reports.model.quantities import QUANTITIES
 Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
-PARTS = 10  # number of intervals of `refined` between two samples
-SAME = 1e-6  # largest change in `refined` by a third of the step; for a tenth of it N-four-bars' errors change < 10 %
-MOST_TRIED = 200_000  # steps after which `refined` returns None: half a minute for 60 rows
+PARTS = 10  # Number of intervals of `refined` between two samples.
+SAME = 1e-6  # Largest change in `refined` by a third of the step; for a tenth of it N-four-bars' errors change < 10 %.
+MOST_TRIED = 200_000  # Steps after which `refined` returns None: half a minute for 60 rows.
 
 TABLEAUS: dict[int, Tableau] = {
     1: Tableau(np.zeros((1, 1)), np.array([1.0]), np.zeros(1)),

@@ -37,10 +37,10 @@ STIFFNESS, DAMPING, COMPLIANCE = 1 / 0.02**2, 2 / 0.02, 0.01
 REFINEMENTS = (
     1,
     3,
-)  # steps per sample of the judge: the first one with an error of order 2 within REACH is used
-REACH = 0.1  # rad
-MOST_STEPS = 20_000  # steps of a run of the judge; in longer scenes only the coarser steps of each method give a bound
-DIFFERENCES = 1000  # intervals of the true motion for its finite differences
+)  # Steps per sample of the judge: the first one with an error of order 2 within REACH is used.
+REACH = 0.1  # rad.
+MOST_STEPS = 20_000  # Steps of a run of the judge; in longer scenes only the coarser steps of each method give a bound.
+DIFFERENCES = 1000  # Intervals of the true motion for its finite differences.
 
 
 @dataclass(frozen=True)
@@ -270,8 +270,8 @@ def _order_errors(scene: Scene, order: int, every: int) -> Mapping[str, float]:
     return _larger_finite(followed[0], followed[-1])
 
 
-MOST_BODIES = 20  # bodies, at most, of a scene for which pages use the judge: with more bodies a run takes minutes
-STAGE = 1e-3  # s, approximate time of one Runge-Kutta stage of the judge for a few bodies
+MOST_BODIES = 20  # Bodies, at most, of a scene for which pages use the judge: with more bodies a run takes minutes.
+STAGE = 1e-3  # s, approximate time of one Runge-Kutta stage of the judge for a few bodies.
 
 
 @dataclass(frozen=True)

@@ -111,8 +111,8 @@ def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
 BASELINE = Path(__file__).parents[1] / "results" / "errors.csv"
 VERDICTS = pytest.StashKey[dict[Case, CaseVerdict]]()
 KNOWN = pytest.StashKey[Baseline]()
-GIVEN = pytest.StashKey[tuple[Engine, ...]]()  # engines that `--engine` names by a reference
-WANTED = pytest.StashKey[tuple[str, ...]]()  # names of engines and methods that `--engine` selects
+GIVEN = pytest.StashKey[tuple[Engine, ...]]()  # Engines that `--engine` names by a reference.
+WANTED = pytest.StashKey[tuple[str, ...]]()  # Names of engines and methods that `--engine` selects.
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -93,8 +93,8 @@ def terms(
         # Rounding of the pose changes velocities at the rate of the motion; see `Prediction.error`.
         rounding = max(rounding, prediction.speed / prediction.length * QUANTITY["angle"].rounding)
     if quantity not in ("gap", "reaction"):
-        rounding *= promise.amplified  # the weights of an extrapolation amplify rounding
-    if quantity == "reaction" and promise.differences:  # a change of velocity over the step
+        rounding *= promise.amplified  # The weights of an extrapolation amplify rounding.
+    if quantity == "reaction" and promise.differences:  # A change of velocity over the step.
         rounding += velocity * promise.amplified * promise.differences / step / prediction.acceleration
     if promise.of(quantity) == EXACT:
         return 0.0, 0.0, rounding

@@ -17,8 +17,8 @@ from reports.plots.theme import FIGURE_WIDTH, LIGHT, drawing, style_axes
 Array = NDArray[np.float64]
 
 PANEL_MARGIN = 0.07
-MIN_HEIGHT, MAX_HEIGHT = 1.4, 5.0  # inches
-MIN_ASPECT = 0.7  # of width to height, so that the labels of ticks do not overlap
+MIN_HEIGHT, MAX_HEIGHT = 1.4, 5.0  # inches.
+MIN_ASPECT = 0.7  # Of width to height, so that the labels of ticks do not overlap.
 
 
 @dataclass(frozen=True)

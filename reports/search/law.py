@@ -26,12 +26,12 @@ from reports.gate.change import Nudge
 
 Array = NDArray[np.float64]
 
-NOISE_MARGIN = 10.0  # above 1, since the noise is the maximum of few samples
-NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # the shift is relative to the distance, the rotation in radians
-LAW_TOLERANCE = 1e-9  # a thousand times the error of rounding with independent rows
-PRECISION_MARGIN = 10.0  # tolerance in units of the engine's precision
-INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # step in units of the mechanism's time scale, and number of steps
-Errors = Mapping[str, tuple[float, float]]  # (error, tolerance) by check
+NOISE_MARGIN = 10.0  # Above 1, since the noise is the maximum of few samples.
+NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # The shift is relative to the distance, the rotation in radians.
+LAW_TOLERANCE = 1e-9  # A thousand times the error of rounding with independent rows.
+PRECISION_MARGIN = 10.0  # Tolerance in units of the engine's precision.
+INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # Step in units of the mechanism's time scale, and number of steps.
+Errors = Mapping[str, tuple[float, float]]  # (error, tolerance) by check.
 
 
 @dataclass(frozen=True)

@@ -194,9 +194,9 @@ def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
     return (RecipeLink("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
 
 
-SHAPE_COUNT = 6  # number of shapes by seed and kinds; every second shape has a loop
-CASES_PER_SHAPE = 10  # number of consecutive cases with the same shape
-SHAPE_TRIALS = 400  # number of recipes that are tried as shapes
+SHAPE_COUNT = 6  # Number of shapes by seed and kinds; every second shape has a loop.
+CASES_PER_SHAPE = 10  # Number of consecutive cases with the same shape.
+SHAPE_TRIALS = 400  # Number of recipes that are tried as shapes.
 
 Whole = Callable[[int, int], int]
 

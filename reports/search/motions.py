@@ -40,18 +40,18 @@ from reports.search.relations import ESTIMATE_MARGIN
 Array = NDArray[np.float64]
 Floors = dict[str, float]
 
-MOTION_SPAN = 0.4  # duration in units of the mechanism's time scale: too short for exponential growth of errors
-MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS: steps between two samples
+MOTION_SPAN = 0.4  # Duration in units of the mechanism's time scale: too short for exponential growth of errors.
+MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS: steps between two samples.
 # Tolerance relative to the error that the declared order predicts from the coarser step. The margin covers the next
 # power of the step and the sampling of the error (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
 # Smallest tolerances, relative to the motion. They cover rounding in combined runs and in drives of large inertias.
 ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
-DIVERGED_ERROR = 10.0  # relative to the motion: a run with a larger error has diverged
-DISTANT_POSE = 0.1  # relative to the length scale: with a larger pose error, reactions are not compared
-CACHED_MECHANISMS = 16  # above `chunk.CHUNK_SIZE`: all engines run one chunk of cases before the next chunk
-RIGID_COMPLIANCE = 1e-10  # in units of the squared time scale: a joint with a smaller compliance counts as ideal
+DIVERGED_ERROR = 10.0  # Relative to the motion: a run with a larger error has diverged.
+DISTANT_POSE = 0.1  # Relative to the length scale: with a larger pose error, reactions are not compared.
+CACHED_MECHANISMS = 16  # Above `chunk.CHUNK_SIZE`: all engines run one chunk of cases before the next chunk.
+RIGID_COMPLIANCE = 1e-10  # In units of the squared time scale: a joint with a smaller compliance counts as ideal.
 ENGINE_WARNED = CheckSkipped("the engine warns that something is wrong")
 
 
@@ -296,7 +296,7 @@ class _Case:
         return missed, min(bound, DIVERGED_ERROR)
 
 
-CLAIM_SPAN = 2.0  # duration in units of the mechanism's time scale
+CLAIM_SPAN = 2.0  # Duration in units of the mechanism's time scale.
 # The case's number selects the number of steps in CLAIM_SPAN and the number of steps between samples.
 CLAIM_STEPS, SAMPLE_INTERVALS = (40, 100, 200), (1, 2, 5)
 CLAIMED_POSES, CLAIMED_REACTIONS, NEEDLESS_REPORT = "claimed", "claimed of reactions", "reported, though right"

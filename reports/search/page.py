@@ -35,8 +35,8 @@ from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 
-RARE_SHARE = 0.01  # reasons of a smaller share of all cases are counted together
-AXIS_LEAST, AXIS_MOST = 1e-17, 1e2  # limits of the axis, to which errors are clipped
+RARE_SHARE = 0.01  # Reasons of a smaller share of all cases are counted together.
+AXIS_LEAST, AXIS_MOST = 1e-17, 1e2  # Limits of the axis, to which errors are clipped.
 ROW_INCHES = 0.24
 
 

@@ -22,8 +22,8 @@ TOGGLE, FOLD = "toggle", "fold"
 SINGULAR_KINDS = (TOGGLE, FOLD)
 RIM_SHAPES = ("line", "circle", "ring", "ellipse")
 
-ANGLE_UNIT = Decimal("0.3")  # rad; 0 is its only multiple with simple sines and cosines
-RATE_UNIT = Decimal("0.5")  # m/s and rad/s
+ANGLE_UNIT = Decimal("0.3")  # rad; 0 is its only multiple with simple sines and cosines.
+RATE_UNIT = Decimal("0.5")  # m/s and rad/s.
 
 
 @dataclass(frozen=True)

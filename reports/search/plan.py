@@ -21,13 +21,13 @@ from reports.search.recipe import build
 from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 
 COMMIT_RULE, SOURCES_RULE = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
-SEED_DECADES = (0, 2, 4)  # decades by seed
-PLANNED_CASES, ALONE_CASES = 100, 1000  # cases of a seed: of an engine, and of MuJoCo alone
+SEED_DECADES = (0, 2, 4)  # Decades by seed.
+PLANNED_CASES, ALONE_CASES = 100, 1000  # Cases of a seed: of an engine, and of MuJoCo alone.
 # Cases of a seed for MJX, which compiles each shape. A case takes three seconds there, elsewhere 0.005 to 0.8.
 COMPILED_CASES = 20
-SINGULAR_CASES = 60  # cases with nearly dependent rows, of an engine that has pins and rods
-KIND_TRIALS = 60  # number of mechanisms that are tried for one kind of joint
-# pymunk's usual slot; `engines.pymunk.joints.slide` says when it is wrong.
+SINGULAR_CASES = 60  # Cases with nearly dependent rows, of an engine that has pins and rods.
+KIND_TRIALS = 60  # Number of mechanisms that are tried for one kind of joint.
+# Pymunk's usual slot; `engines.pymunk.joints.slide` says when it is wrong.
 GROOVE_SUBJECT = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
 
 

@@ -43,8 +43,8 @@ Point = tuple[Decimal, Decimal]
 # Smallest ratio of the singular values of the rows. With a smaller ratio, rounding would change the forces and the
 # motion in every engine.
 DEPENDENCE_LIMIT = 1e-3
-SINGULAR_LIMIT = 1e-6  # the limit in mechanisms with toggles or folds
-MOTION_ROUNDING = 1e-12  # relative to the recipe's velocities: smaller projected velocities are rounding errors
+SINGULAR_LIMIT = 1e-6  # The limit in mechanisms with toggles or folds.
+MOTION_ROUNDING = 1e-12  # Relative to the recipe's velocities: smaller projected velocities are rounding errors.
 
 
 def build(recipe: Recipe) -> Mechanism:

@@ -36,10 +36,10 @@ State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, i
 
 # Methods that combine runs amplify rounding up to a hundred times. Very stiff constraints lose half of the digits.
 DESCRIPTION_TOLERANCE = 1e-7
-LOW_PRECISION_ROUNDINGS = 1e4  # tolerance in roundings of the engine, since a displacement is a small difference
-POSITION_ROUNDING = 1e-6  # relative to the position: rounding of the position affects smaller displacements
-MAX_NOISE = 0.1  # relative to the motion: with more noise the check detects nothing
-ESTIMATE_MARGIN = 10.0  # an error above ESTIMATE_MARGIN times the error estimate contradicts the estimate
+LOW_PRECISION_ROUNDINGS = 1e4  # Tolerance in roundings of the engine, since a displacement is a small difference.
+POSITION_ROUNDING = 1e-6  # Relative to the position: rounding of the position affects smaller displacements.
+MAX_NOISE = 0.1  # Relative to the motion: with more noise the check detects nothing.
+ESTIMATE_MARGIN = 10.0  # An error above ESTIMATE_MARGIN times the error estimate contradicts the estimate.
 TOO_LONG = CheckSkipped("something turns by more than a radian in a step, so rounding errors grow without a bound")
 
 CHANGES: dict[str, Change] = {

@@ -23,7 +23,7 @@ from reports.search.law import Fault
 from reports.search.mujoco_alone import RawModel, StartEquations, start_equations, to_mjcf
 from reports.search.parts import case_from_json, case_to_json
 
-DISTRIBUTIONS = ("mujoco-core", "mujoco")  # mujoco-core exists from version 4.0 on
+DISTRIBUTIONS = ("mujoco-core", "mujoco")  # Mujoco-core exists from version 4.0 on.
 # MuJoCo omits the velocity term of curved equalities. CURVED expects the term; BESIDE_CURVED accepts its absence.
 CURVED, BESIDE_CURVED = "acceleration, a known fault", "beside the known fault"
 

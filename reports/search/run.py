@@ -30,9 +30,9 @@ from reports.search.shrinking import Shrink, choose_worst
 from reports.search.subjects import Subject
 
 STORE = "cells.sqlite"
-CHUNK_LIMIT = 120.0  # CPU time of a chunk [s]
-PLANTED_LIMIT = 1800.0  # CPU time of a control with a planted fault [s]
-WAVE_CHUNKS = 4  # chunks for each worker between two checks of the time limit
+CHUNK_LIMIT = 120.0  # CPU time of a chunk [s].
+PLANTED_LIMIT = 1800.0  # CPU time of a control with a planted fault [s].
+WAVE_CHUNKS = 4  # Chunks for each worker between two checks of the time limit.
 DEFAULT_CASES = 200
 
 # (store, tasks, limit, label, number of cases of a task) -> the tasks that are not stored, done(answer, count), watch
@@ -79,8 +79,8 @@ class Search:
     seconds: float | None = None
     progress: Progress = quietly
     begin: float = field(default_factory=monotonic)
-    cases: int = 0  # number of cases of this run
-    first: str = ""  # sentence on the first finding
+    cases: int = 0  # Number of cases of this run.
+    first: str = ""  # Sentence on the first finding.
 
     @property
     def spent(self) -> float:

@@ -88,9 +88,9 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
         yield from dict.fromkeys([0, step, int(value / 2), value - step])
 
 
-SHRINK_TIME = 20.0  # CPU time for one finding [s]
-KEPT_SHARE = 0.01  # smallest error relative to the original one; a smaller error may have another cause
-FINDINGS_SHRUNK = 2  # number of findings that are reduced, by check and subject
+SHRINK_TIME = 20.0  # CPU time for one finding [s].
+KEPT_SHARE = 0.01  # Smallest error relative to the original one; a smaller error may have another cause.
+FINDINGS_SHRUNK = 2  # Number of findings that are reduced, by check and subject.
 
 
 @dataclass(frozen=True)

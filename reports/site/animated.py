@@ -33,16 +33,16 @@ from reports.site import drawn
 from reports.site.live.sliders import Look
 
 Array = NDArray[np.float64]
-Moving = list[tuple[Line2D, Array, Array]]  # lines, their points in the body's frame (points, 2), its poses (times, 3)
-Growing = list[tuple[Line2D, Array]]  # lines, and the error at every instant [rad]
+Moving = list[tuple[Line2D, Array, Array]]  # Lines, their points in the body's frame (points, 2), its poses (times, 3).
+Growing = list[tuple[Line2D, Array]]  # Lines, and the error at every instant [rad].
 
-FRAMES = 100  # approximate upper bound of the number of samples in an animation
-SECONDS = 8.0  # duration of one repetition
-PAUSE = 0.12  # pause at the end of a repetition of an SVG, as a fraction of SECONDS
-KEYS = 60  # key frames of an SVG; the browser interpolates linearly between them
-RATE = 25  # frames per second of a film; the duration of a frame in a GIF is a multiple of 0.01 s
+FRAMES = 100  # Approximate upper bound of the number of samples in an animation.
+SECONDS = 8.0  # Duration of one repetition.
+PAUSE = 0.12  # Pause at the end of a repetition of an SVG, as a fraction of SECONDS.
+KEYS = 60  # Key frames of an SVG; the browser interpolates linearly between them.
+RATE = 25  # Frames per second of a film; the duration of a frame in a GIF is a multiple of 0.01 s.
 INCHES = (12.8, 5.6)
-DOTS = 100  # pixels per inch of a film
+DOTS = 100  # Pixels per inch of a film.
 # Line width [pt] and dashes (in multiples of the width) of each motion.
 LOOKS: tuple[tuple[float, Any], ...] = (
     (5.6, "-"),
@@ -89,8 +89,8 @@ class Shown:
     mechanism: Mechanism
     t: Array  # (frames,) s
     truth: Trajectory
-    motions: Mapping[str, Array]  # label -> poses (frames, bodies, 3), NaN after the method has failed
-    missing: Mapping[str, str]  # label -> reason
+    motions: Mapping[str, Array]  # Label -> poses (frames, bodies, 3), NaN after the method has failed.
+    missing: Mapping[str, str]  # Label -> reason.
 
 
 def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:

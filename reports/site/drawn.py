@@ -18,11 +18,11 @@ from reports.site.live.sliders import Look, Point
 Array = NDArray[np.float64]
 
 # Sizes as fractions of the mechanism's length scale.
-BLOCK = 0.07  # half the side of a body without joints and ends
-PIN = 0.018  # radius of a pin
-BLADE = 0.16  # length of a blade
-SUPPORT = 0.05  # half the width of a support
-OUTLINE = 160  # number of points of a curve
+BLOCK = 0.07  # Half the side of a body without joints and ends.
+PIN = 0.018  # Radius of a pin.
+BLADE = 0.16  # Length of a blade.
+SUPPORT = 0.05  # Half the width of a support.
+OUTLINE = 160  # Number of points of a curve.
 
 
 def number(value: float, digits: int = 5) -> str:

@@ -41,8 +41,8 @@ class Documents:
 
     sources: Mapping[str, bytes]
     extra: Mapping[str, bytes]
-    context: Mapping[str, Any]  # values for the templates
-    add_pages: Callable[[Any], Iterator[Extra]]  # receives the Sphinx application after all documents are written
+    context: Mapping[str, Any]  # Values for the templates.
+    add_pages: Callable[[Any], Iterator[Extra]]  # Receives the Sphinx application after all documents are written.
 
 
 def require_packages() -> None:

@@ -113,7 +113,7 @@ class SiteSource:
     answers: Mapping[Motion, Answer]
     cache: Path
     foot: str
-    contributing: str = ""  # CONTRIBUTING.md, from which pages quote; empty outside of a checkout
-    api: bool = True  # whether the site has a reference from docstrings, which takes a minute to build
-    lecture: str = ""  # the notebook as JSON
-    troubles: list[str] = field(default_factory=list)  # a message for each missing file
+    contributing: str = ""  # CONTRIBUTING.md, from which pages quote; empty outside of a checkout.
+    api: bool = True  # Whether the site has a reference from docstrings, which takes a minute to build.
+    lecture: str = ""  # The notebook as JSON.
+    troubles: list[str] = field(default_factory=list)  # A message for each missing file.

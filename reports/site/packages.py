@@ -23,9 +23,9 @@ from reports.model.fingerprint import digest
 from reports.run.files import temporary_folder
 from reports.run.installed import sources
 
-PATIENCE = 180  # s: timeout for one package
-ANSWERING = 8  # s: timeout of a query to a registry; it is short, since the network may be missing
-COMPILING = 600  # s: timeout of emscripten, which builds its own library first
+PATIENCE = 180  # s: timeout for one package.
+ANSWERING = 8  # s: timeout of a query to a registry; it is short, since the network may be missing.
+COMPILING = 600  # s: timeout of emscripten, which builds its own library first.
 SHIM = Path(__file__).with_name("munk2d.c")
 # At -O2 emscripten 3.1.6 of Debian fails in a later step.
 FLAGS = (

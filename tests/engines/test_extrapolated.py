@@ -29,9 +29,9 @@ class SeriesToy(Plain):
     """
 
     terms: dict[int, float] = field(default_factory=lambda: {2: 1.0, 3: -2.0})
-    broken_below: float = 0.0  # [s] runs with smaller steps are NaN after the first sample
-    resets_below: float = 0.0  # [s] runs with smaller steps have a reset
-    turned_above: float = math.inf  # [s] runs with larger steps have an error of 1 rad from t = 2 s on
+    broken_below: float = 0.0  # [s] runs with smaller steps are NaN after the first sample.
+    resets_below: float = 0.0  # [s] runs with smaller steps have a reset.
+    turned_above: float = math.inf  # [s] runs with larger steps have an error of 1 rad from t = 2 s on.
     name: str = "toy"
     variant: str = "plain"
 
@@ -109,7 +109,7 @@ def test_errors_in_the_removed_powers_vanish():
     assert min(errors(inner)) > 1e-2
     assert max(errors(run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13
     exact = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
-    assert present(exact.estimate).max() < 1e-12  # rounding of all steps
+    assert present(exact.estimate).max() < 1e-12  # Rounding of all steps.
     # With the powers (2, 4) the term 2 t dt^3 leaves an error of 2 * 3 * 1e-3 / 60; other powers leave more.
     for powers in ((2, 4), (1, 3), (3, 4)):
         extrapolated = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), powers))

@@ -22,8 +22,8 @@ from reports.gate.judge import in_numpy, stepped
 from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import ALL_KINDS
 
-H = 1e-30  # size of a complex step
-MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # of accelerations; resolved motions take 500 and 30,000
+H = 1e-30  # Size of a complex step.
+MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # Of accelerations; resolved motions take 500 and 30,000.
 WITNESSED_KINDS = tuple(kind for kind in ALL_KINDS if kind != "roll")
 
 
@@ -161,8 +161,8 @@ class Witness:
 
 
 WITNESS_SAMPLES, JUDGE_STEPS = 2, 40
-WITNESS_SPAN = 0.4  # duration of a motion in units of the mechanism's time scale
-WITNESSED_NUMBERS = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # these mechanisms have every kind of joint and force element
+WITNESS_SPAN = 0.4  # Duration of a motion in units of the mechanism's time scale.
+WITNESSED_NUMBERS = (0, 2, 4, 5, 6, 7, 8, 9, 10, 13)  # These mechanisms have every kind of joint and force element.
 
 
 @pytest.mark.parametrize("number", WITNESSED_NUMBERS)
@@ -231,8 +231,8 @@ def compared(
     return WitnessedCase(number, is_resolved, difference((judge.pose, judge.twist), tight), difference(loose, tight))
 
 
-WITNESS_SEED = 291528136  # from a commit's hash, so that it is not selected
-STIFF_NUMBERS = (59, 114, 237, 411)  # springs make these mechanisms 10 to 3204 times faster
+WITNESS_SEED = 291528136  # From a commit's hash, so that it is not selected.
+STIFF_NUMBERS = (59, 114, 237, 411)  # Springs make these mechanisms 10 to 3204 times faster.
 
 
 def confirmed(cases: list[WitnessedCase]) -> list[WitnessedCase]:

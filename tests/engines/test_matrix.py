@@ -220,7 +220,7 @@ OF_MUJOCO = (
     *on(HALVES, (TRAMMEL,), pose=1e-9, span=0.2),
     Row(HALVES, plate(), pose=1e-8, reaction=1e-2, span=0.2),
     *on(mujoco.EXTENDED, (TRAMMEL, plate()), pose=1e-8, reaction=1e-2, span=0.2),
-    *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # its spring depends on the step, as that of the weld
+    *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # Its spring depends on the step, as that of the weld.
     # The linkage is flat at about 0.7 s, where the rows are dependent.
     Row(mujoco.EXTENDED, NFourBar(), pose=1e-6, span=1.5),
     # At 10 ms the error at order 1 is a dt^2 / 2 for each step, and that of shipped loops is their regularisation.

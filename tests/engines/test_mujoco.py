@@ -93,10 +93,10 @@ def test_the_solver_converges_with_the_armature_of_a_drive() -> None:
     [
         (EXTENDED, FREE.mechanism(), (3, 3, 2, 3)),  # only the pin that closes the loop is a constraint
         (FREE_COORDINATES, FREE.mechanism(), (3, 9, 8, 12)),
-        (EXTENDED, FreeSliderCrank().mechanism(), (3, 3, 2, 3)),  # a slider that keeps its angle is one coordinate
+        (EXTENDED, FreeSliderCrank().mechanism(), (3, 3, 2, 3)),  # A slider that keeps its angle is one coordinate.
         # Four pins and the slot have rows. The angle of the slider is driven at rate zero by an armature.
         (FREE_COORDINATES, FreeSliderCrank().mechanism(), (3, 9, 8, 10)),
-        (EXTENDED, far_drive(), (4, 4, 3, 4)),  # a clock drives the sum of two coordinates
+        (EXTENDED, far_drive(), (4, 4, 3, 4)),  # A clock drives the sum of two coordinates.
         # A contact has four rows for the edges of a pyramid, or a normal row and two friction rows. One of these is
         # empty, since it is normal to the plane. EXTENDED has two user rows.
         *((engine, RollingDisc().mechanism(), (1, 3, 2, n)) for engine, n in ((DEFAULT, 4), (TUNED, 3), (EXTENDED, 2))),

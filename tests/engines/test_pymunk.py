@@ -89,7 +89,7 @@ def test_a_crank_turns_about_its_pin_whichever_body_is_first(grounded_first):
         force = sign * 2.0 * (-(rate**2) * swing + [0, 9.81])
         torque = sign * 2.0 * 9.81 * swing[:, 0]
         error = np.abs(trajectory.reaction[:, order] - np.column_stack([force, torque]))
-        assert error[1:].max() < 1e-9  # rounding
+        assert error[1:].max() < 1e-9  # rounding.
         # The first reaction is that of the third step, where the angle differs by 0.09 rad. LEAPFROG extrapolates it
         # from the third and fourth steps, with an error of 6 (rate dt)^2. EXTENDED extrapolates it to step size zero.
         assert error[0].max() < {DEFAULT: 0.09, TUNED: 0.09, LEAPFROG: 6e-3, EXTENDED: 1e-9}[method] * 2.0 * 9.81

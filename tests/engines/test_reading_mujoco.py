@@ -109,7 +109,7 @@ def test_an_element_gives_the_same_accelerations_in_any_plane(name, turned):
     data.ctrl[:] = 0.7
     reading = read(model, data)
     assert refuse_disagreement(reading) < SMALL_SYSTEM_ROUNDING
-    assert any(note.element == "gravity" for note in reading.notes)  # its component across the plane
+    assert any(note.element == "gravity" for note in reading.notes)  # Its component across the plane.
     # Without forces and with another gravity the accelerations differ.
     with pytest.raises(Unsupported, match="differ from those of the ideal mechanism"):
         refuse_disagreement(changed(reading, gravity=(0.3, -5.0), forces=()))

@@ -71,7 +71,7 @@ def test_the_centrodes_of_a_sliding_ladder_are_cardans_circles():
     motion = from_poses(*cardan())
     np.testing.assert_allclose(np.linalg.norm(motion.space, axis=-1), 1.0, atol=1e-11)
     np.testing.assert_allclose(np.linalg.norm(motion.body, axis=-1), 0.5, atol=1e-11)
-    inner = slice(5, -5)  # the end derivatives of a spline are extrapolated
+    inner = slice(5, -5)  # The end derivatives of a spline are extrapolated.
     # The curvature needs three derivatives of the poses, so its rounding error is eps / (0.0055 rad)^3.
     np.testing.assert_allclose(motion.space_curvature[inner], -1.0, atol=1e-7)
     np.testing.assert_allclose(motion.body_curvature[inner], 2.0, atol=1e-7)

@@ -132,7 +132,7 @@ def test_coupler_and_rocker_are_in_line_at_crank_limits_and_angles_beyond_are_re
         ((2.0, 1.0, 2.5), (3.0, 0.0), "double-rocker"),
         ((2.0, 2.2, 1.9), (3.0, 0.0), "triple-rocker"),
         ((0.1, 0.3, 0.1), (0.3, 0.0), "change-point"),
-        ((0.1, 0.7, 0.2), (0.8, 0.0), "change-point"),  # 0.1 + 0.8 and 0.7 + 0.2 differ by rounding
+        ((0.1, 0.7, 0.2), (0.8, 0.0), "change-point"),  # 0.1 + 0.8 and 0.7 + 0.2 differ by rounding.
         # A difference of 1e-11 m is no change-point: s + l - p - q for s = 1, l = 3, p = 1.5, q = 2.5 m.
         ((1.0, 1.5, 2.5 - 1e-11), (3.0, 0.0), "triple-rocker"),
         ((1.0, 1.5, 2.5 + 1e-11), (3.0, 0.0), "crank-rocker"),
@@ -170,7 +170,7 @@ def test_a_free_triple_rocker_changes_its_branch_at_crank_limits_without_a_jolt(
     assert set(branch) == {1, -1}
     for change in np.flatnonzero(np.diff(branch)):
         near = min(abs(theta[change] - low), abs(theta[change] - high))
-        assert near < 0.05  # less than the crank's rotation between two samples
+        assert near < 0.05  # Less than the crank's rotation between two samples.
         # The change of the speed agrees with the mean of the accelerations at both samples.
         pair = slice(change, change + 2)
         told = np.mean(bend[pair], axis=0) * np.diff(motion.t[pair])

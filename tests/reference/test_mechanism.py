@@ -44,8 +44,8 @@ JOINTED = {
 @pytest.mark.parametrize("name", JOINTED)
 def test_rows_are_derivatives_of_the_gap_and_the_bias_is_minus_the_rate_of_the_rows(name):
     mechanism, h = JOINTED[name], 1e-5
-    poses, twists = RANDOM.normal(size=(2, 20, len(mechanism.bodies), 3))  # random poses do not satisfy the joints
-    rows, step = mechanism.rows(poses), 1e-30  # a complex step has no cancellation, so the errors are roundings
+    poses, twists = RANDOM.normal(size=(2, 20, len(mechanism.bodies), 3))  # Random poses do not satisfy the joints.
+    rows, step = mechanism.rows(poses), 1e-30  # A complex step has no cancellation, so the errors are roundings.
     for column in range(rows.shape[-1] if name != "skate" else 0):
         moved = poses.astype(complex).reshape(20, -1)
         moved[:, column] += 1j * step
@@ -241,8 +241,8 @@ def test_degrees_of_freedom_do_not_depend_on_the_unit_of_length(scale):
 
 def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth():
     rows = np.zeros((4, 6))
-    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # independent of the other rows
-    rows[1, :2] = 1.0, 1e-3  # the first row plus a thousandth of the third
+    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # Independent of the other rows.
+    rows[1, :2] = 1.0, 1e-3  # The first row plus a thousandth of the third.
     several = undetermined(np.stack([rows, np.eye(6)[:4]]), 1.0)
     assert several.tolist() == [[True, True, True, False], [False] * 4]
     assert rank(rows, 1.0) == 3

@@ -35,7 +35,7 @@ UNITS = {
     **{"speed": SPEED, "gravity": PULL, "density": (-1, 0, 1), "stiffness": (0, -2, 1), "torque": (2, -2, 1)},
 }
 OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
-POSES = ("start", "pose")  # fields with x, y and angle
+POSES = ("start", "pose")  # Fields with x, y and angle.
 # Units of length [m], time [s] and mass [kg]. No sum of their exponents with small integer factors is zero, so that
 # errors in two exponents cannot cancel.
 SCALES = {"small": (2.0**-30, 2.0**-17, 2.0**23), "large": (2.0**30, 2.0**19, 2.0**-13)}
@@ -116,5 +116,5 @@ COSTLY = (
 def test_the_motion_of_a_scene_does_not_depend_on_units(scene: Scene, scale: str) -> None:
     # The motions differ by rounding. Scenes in COSTLY are slow, and their rounding errors may grow tenfold up to
     # the horizon.
-    allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # joint forces sum more roundings
+    allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # Joint forces sum more roundings.
     assert difference(scene, SCALES[scale]) < allowed

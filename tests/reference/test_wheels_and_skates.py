@@ -61,8 +61,8 @@ def test_the_commutator_displacement_tends_to_the_product_of_turn_and_slide_side
     )
     turn = np.array([1e-1, 1e-2, 1e-3])
     rest = commutator_displacement(turn, turn) / turn[:, None] ** 2 - [0.0, 1.0]
-    assert np.abs(rest[:, 0] / turn + 1 / 2).max() < 1e-3  # -turn/2 + turn^3/24
-    assert np.abs(rest[:, 1] / turn**2 + 1 / 6).max() < 1e-4  # -turn^2/6 + turn^4/120
+    assert np.abs(rest[:, 0] / turn + 1 / 2).max() < 1e-3  # -turn/2 + turn^3/24.
+    assert np.abs(rest[:, 1] / turn**2 + 1 / 6).max() < 1e-4  # -turn^2/6 + turn^4/120.
 
 
 def test_a_sidestep_moves_exactly_sideways_within_its_limits():

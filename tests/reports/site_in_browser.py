@@ -27,8 +27,8 @@ playwright = pytest.importorskip("playwright.sync_api", reason="playwright is no
 pytest.importorskip("furo", reason="furo is not installed: pip install '.[site]'")
 
 PHONE = {"width": 390, "height": 844}
-TALL = {"width": 1200, "height": 8000}  # without scrolling, the picture does not switch to another experiment
-LONGEST = 300_000.0  # timeout [ms], long enough for a loaded machine
+TALL = {"width": 1200, "height": 8000}  # Without scrolling, the picture does not switch to another experiment.
+LONGEST = 300_000.0  # Timeout [ms], long enough for a loaded machine.
 
 # The slow tests use the other lessons too.
 QUICK = ("four_bar", "skate", "rolling")

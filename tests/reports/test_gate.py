@@ -205,11 +205,11 @@ def falling_errors(power: float, points: int = 4) -> tuple[float, ...]:
     [
         (2, falling_errors(2), True),
         (2, falling_errors(1.7), True),
-        (2, falling_errors(1), False),  # too slowly
-        (1, falling_errors(2), False),  # the promise is weaker than the method
-        (1, (1e-3, 3.3e-4, 3.2e-4, 3.1e-4), False),  # a plateau
-        (1, (1e-3, 3.3e-4, 3.2e-4), False),  # levels off
-        (1, (1e-5, 1e-4, 1e-3, 1e-2), False),  # grows
+        (2, falling_errors(1), False),  # Too slowly.
+        (1, falling_errors(2), False),  # The promise is weaker than the method.
+        (1, (1e-3, 3.3e-4, 3.2e-4, 3.1e-4), False),  # A plateau.
+        (1, (1e-3, 3.3e-4, 3.2e-4), False),  # Levels off.
+        (1, (1e-5, 1e-4, 1e-3, 1e-2), False),  # grows.
     ],
 )
 def test_the_promised_order_passes_and_another_a_plateau_and_growth_do_not(promised, errors, passes):

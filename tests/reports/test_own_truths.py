@@ -286,7 +286,7 @@ def test_a_body_that_may_fall_asleep_is_named_with_the_time():
     assert bob.is_sleeping
     with pytest.raises(Unsupported, match=r"^body 1: it is asleep at the start"):
         read_space(space, 0.01)
-    bob.activate()  # pymunk (7.3.1) ends the process where a space with a sleeping body is freed
+    bob.activate()  # Pymunk (7.3.1) ends the process where a space with a sleeping body is freed.
     # It is checked if it is awake: with sleep left out, or too fast to sleep.
     assert check(read_space(swinging(0.3, 0.02), 0.001, ["sleep"]), "awake", 1.0, 1e-1, plan=NOTHING).met
     assert check(read_space(swinging(0.3, 1e-5), 0.001), "fast", 1.0, 1e-1, plan=NOTHING).met

@@ -102,8 +102,8 @@ def at_steps() -> Iterator[list[Measurement]]:
     yield falling("mujoco tuned", POWER)
     yield falling("mujoco tuned", (1e-2, 1e-13))  # falls to rounding
     yield falling("mujoco tuned", (1e-2, 3e-5, 2e-5, 2e-5))
-    yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # levels off
-    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # least at 1 ms
+    yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # Levels off.
+    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # Least at 1 ms.
     # Two errors cancel at the second step, so the cell has the plateau and the remark that less is luck.
     yield falling("mujoco tuned", (1e-2, 1e-4, 1e-3, 1.1e-3, 1.11e-3))
     # Here they cancel at a step that is not in the cell, so there is no remark.

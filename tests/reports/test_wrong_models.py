@@ -33,8 +33,8 @@ NOTHING = 0.01
 
 # Scenes that are too long for every mistake, or in which right models fail before their end [s].
 DURATIONS = {
-    "point_pendulum": 2.0,  # the grid's own steps lose the phase over its 2000 s
-    "n_four_bar_2": 0.3,  # before the first singular position, where right models go apart
+    "point_pendulum": 2.0,  # The grid's own steps lose the phase over its 2000 s.
+    "n_four_bar_2": 0.3,  # Before the first singular position, where right models go apart.
     "n_four_bar_10": 0.3,
     "n_four_bar_40": 0.2,
     "pendulum_10": 1.0,

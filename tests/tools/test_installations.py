@@ -23,7 +23,7 @@ import pytest
 from tests import ROOT
 from tests.reports.test_check import FOUR_BAR
 
-OLDEST_SETUPTOOLS = 77  # as in the build-system table of pyproject.toml
+OLDEST_SETUPTOOLS = 77  # As in the build-system table of pyproject.toml.
 # Build and result folders, which are not committed, and folders that no wheel contains.
 LEFT_OUT_OF_CHECKOUT = (".*", "__pycache__", "build", "dist", "*.egg-info", "crosscheck-results", "tests")
 BUILD = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"

@@ -29,8 +29,8 @@ from reports.write.columns import displayed_variant
 from reports.write.tables import DASH, markdown, number, step_words
 
 RESULTS = Path(__file__).parents[2] / "results"
-ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad
-CRITICAL_RESIDUAL = 0.5  # see `residual_of_sweeps`
+ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad.
+CRITICAL_RESIDUAL = 0.5  # See `residual_of_sweeps`.
 MAX_DECADES_FOR_FINE_TICKS = 2.2
 # Prediction of a border -> (label, role of the colour, dashes). "gives" and "left" are fields of `StoredColumn`.
 PREDICTIONS: Mapping[str, tuple[str, str, Any]] = {

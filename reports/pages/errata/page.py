@@ -54,8 +54,8 @@ POINTS, MIDDLE = len(FIRST_DERIVATIVE), len(FIRST_DERIVATIVE) // 2
 class SampleWindow:
     """POINTS successive samples of an engine's motion; formulas are evaluated at the middle sample."""
 
-    pose: Array  # (POINTS, bodies, 3)
-    twist: Array  # (POINTS, bodies, 3)
+    pose: Array  # (POINTS, bodies, 3).
+    twist: Array  # (POINTS, bodies, 3).
 
     def change(self, values: Array) -> Array:
         """The time derivative [1/s] of values (POINTS, ...) at the middle sample."""

@@ -27,10 +27,10 @@ from reports.model.tasks import Task, Values
 from reports.pages.common import MethodTask
 
 Array = NDArray[np.float64]
-ACROBOT_GRAVITY, HORIZON = 9.8, 100.0  # m/s^2, s
-ACROBOT_STEPS = (0.2, 0.05, 0.01)  # s; Gymnasium's step is 0.2 s
-PUBLISHED = (3.554e-3, 4.189e-6, 1.519e-8)  # relative drift of the energy at ACROBOT_STEPS
-ACROBOT_START = 0.30488863  # rad; with this angle the drift of RK4 at ACROBOT_STEPS[0] is PUBLISHED[0]
+ACROBOT_GRAVITY, HORIZON = 9.8, 100.0  # m/s^2, s.
+ACROBOT_STEPS = (0.2, 0.05, 0.01)  # s; Gymnasium's step is 0.2 s.
+PUBLISHED = (3.554e-3, 4.189e-6, 1.519e-8)  # Relative drift of the energy at ACROBOT_STEPS.
+ACROBOT_START = 0.30488863  # rad; with this angle the drift of RK4 at ACROBOT_STEPS[0] is PUBLISHED[0].
 
 
 def acrobot(angle: float = ACROBOT_START) -> Mechanism:
@@ -131,13 +131,13 @@ class Acrobot(MethodTask):
         return {"drift": np.array(drift)}
 
 
-NEWTON_GRAVITY = 10.0  # m/s^2
-ROD_LENGTH, BALL_RADIUS = 1.0, 0.01  # m; the rod has no mass
-SMALL_SWING, LARGE_SWING = 0.05, 1.0  # rad; initial angles
-PERIODS = 3.5  # of the small swing
-LARGE_SWING_DURATION = 2.0  # s
-NEWTON_STEPS = (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)  # s; Newton's tests have 1e-3 s, and 2e-4 s for the four-bar
-SAMPLE_INTERVAL = 1e-2  # s
+NEWTON_GRAVITY = 10.0  # m/s^2.
+ROD_LENGTH, BALL_RADIUS = 1.0, 0.01  # m; the rod has no mass.
+SMALL_SWING, LARGE_SWING = 0.05, 1.0  # rad; initial angles.
+PERIODS = 3.5  # Of the small swing.
+LARGE_SWING_DURATION = 2.0  # s.
+NEWTON_STEPS = (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)  # s; Newton's tests have 1e-3 s, and 2e-4 s for the four-bar.
+SAMPLE_INTERVAL = 1e-2  # s.
 # Error of the rocker's angle [degrees], gap [m], mean error of the small swing relative to its amplitude, relative
 # drift of the energy.
 NEWTON_BOUNDS = {"angle": 0.1, "gap": 1e-3, "period": 1e-2, "energy": 5e-3}

@@ -78,7 +78,7 @@ def slope() -> Figure:
 SKATE_SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinnedBody())
 SLEIGH_AHEAD = ChaplyginSleigh()
 
-BLADES = 7  # blades drawn along a path
+BLADES = 7  # Blades drawn along a path.
 # Method with a visible error -> (colour, dashes).
 DRAWN_PATHS: dict[str, tuple[str, Any]] = {
     "pymunk skate: centre's velocity zeroed": ("first", "--"),

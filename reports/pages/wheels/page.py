@@ -66,7 +66,7 @@ def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
 
 
 # If the car reverses straight at the speed v, the bend b follows b' = (v/L) sin b, and tan(b/2) grows as exp(v t/L).
-FOLDS = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)  # s
+FOLDS = BACKING.length * math.log(1 / math.tan(BACKING.bend / 2)) / abs(BACKING.speed)  # s.
 REFERENCE = Folding(BACKING, FOLDS + 1)
 RUNS = tuple(Cell(BACKING, engine, every) for engine in ENGINES_ALONE for every in steps_for(engine, (1, 10)))
 
@@ -111,8 +111,8 @@ FORCE_QUANTITIES = ("position", "slip", "energy", "reaction")
 CAR, CART = CarAndTrailer(redundant=True), Cart(redundant=True)
 
 
-DRAWBAR = 1.0  # m
-RADII = (1.6, 1.0, 0.6)  # m, of the hitch's circles
+DRAWBAR = 1.0  # m.
+RADII = (1.6, 1.0, 0.6)  # m, of the hitch's circles.
 DRAWBARS = 7
 
 

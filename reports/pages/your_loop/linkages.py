@@ -20,7 +20,7 @@ import pymunk
 from pymunk import constraints as joints
 
 PLANS: Mapping[str, list[list[Any]]] = json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
-PIXEL_GRAVITY = (0, -900)  # px/s^2
+PIXEL_GRAVITY = (0, -900)  # px/s^2.
 # The first word of an element -> its class. The other words are the arguments of the class.
 PYMUNK_JOINTS: Mapping[str, Callable[..., joints.Constraint]] = {
     "pin": joints.PivotJoint,

@@ -28,8 +28,8 @@ class ModelCheck(Task):
 
     file: str
     text: str
-    argument: str  # of the command line
-    duration: float  # s
+    argument: str  # Of the command line.
+    duration: float  # s.
     tolerance: float
     step: float | None = None
     seconds: ClassVar[float] = 15.0

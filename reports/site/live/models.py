@@ -29,7 +29,7 @@ class MujocoText:
     """A MuJoCo model for the page; `text` is the MJCF that `crosscheck export` writes."""
 
     text: str
-    bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism
+    bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism.
     # Parents first: body, parent (-1: ground), indices in qpos of the rotation and the slide (-1: none), slide
     # direction.
     links: tuple[tuple[float, ...], ...]
@@ -78,8 +78,8 @@ class MunkSpace:
     """A pymunk space for the page; `space_of` defines the numbers."""
 
     numbers: tuple[float, ...]
-    idle: tuple[str, ...]  # settings without an effect on this model
-    impulses: tuple[int, ...]  # index of the constraint of each pin and slot; -1 without a constraint of pymunk
+    idle: tuple[str, ...]  # Settings without an effect on this model.
+    impulses: tuple[int, ...]  # Index of the constraint of each pin and slot; -1 without a constraint of pymunk.
 
 
 def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace:
@@ -100,7 +100,7 @@ def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace
     def index(body: Any) -> int:
         return places.get(body, -1)
 
-    constraints = list(space._constraints)  # a list, while the public property is a set without an order
+    constraints = list(space._constraints)  # A list, while the public property is a set without an order.
     # An aimed groove has no gap, so its error_bias has no effect.
     aimed = [aim.constraint for aim in model.before_step if isinstance(aim, AimedGroove)]
     biases = {constraint.error_bias for constraint in constraints if constraint not in aimed}

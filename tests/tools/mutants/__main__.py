@@ -21,8 +21,8 @@ from tests.tools.mutants.mistakes import BadList, Mutation, read_mistakes
 EXCLUDED_FROM_COPY = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
 PYTEST_OPTIONS = ("-q", "-x", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider")
 FAST_TESTS = ("-m", "not slow and not crosscheck")
-NO_TEST = (4, 5)  # exit statuses of pytest without a collected test
-TEST_TIMEOUT = 300.0  # s, for one run of pytest
+NO_TEST = (4, 5)  # Exit statuses of pytest without a collected test.
+TEST_TIMEOUT = 300.0  # s, for one run of pytest.
 
 
 def copy_tree(folder: Path) -> Path:
