@@ -21,6 +21,7 @@ test: .venv/installed            ## the tests without those marked slow, then th
 
 publish: .venv/installed-mjx     ## for maintainers: all engines and releases, into reports/results and README.md
 	$(BIN)/python -m engines.browser
+	$(BIN)/python -m reports.site.munk2d
 	$(BIN)/crosscheck run --full
 	$(BIN)/crosscheck versions --all --publish
 	$(BIN)/crosscheck search --published

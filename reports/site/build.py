@@ -26,7 +26,8 @@ from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import data, first_picture
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
 from reports.site.markdown import cards, render_html, render_lecture, section, title
-from reports.site.packages import PACKAGES, NotFetched, compile_munk2d, fetch_package
+from reports.site.munk2d import COMPILED
+from reports.site.packages import D3, MUJOCO, PACKAGES, PLOT, NotFetched, Package, fetch_package
 from reports.write.columns import COLUMN_OF_VARIANT
 from reports.write.csv_files import read_lines
 from reports.write.templates import CODE, inert_page
@@ -63,9 +64,11 @@ def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
         for lesson in lessons:
             engines = [name for name, path in ENGINE_FILES.items() if path in extra]
             values = _lesson_context(lesson, partial(quote_section, app, lesson.page))
-            yield f"lessons/{lesson.name}", {**values, "up": "../", "engines": engines}, "lesson.html"
-        charts = "packages/plot.min.js" in extra
-        yield "results/rows", {"title": "All stored rows", "up": "../", "charts": charts}, "explorer.html"
+            given = {"up": "../", "engines": engines, "missing": _without(source, MUJOCO)}
+            yield f"lessons/{lesson.name}", {**values, **given}, "lesson.html"
+        missing = [*_without(source, D3), *_without(source, PLOT)]
+        given = {"title": "All stored rows", "up": "../", "charts": not missing, "missing": missing[:1]}
+        yield "results/rows", given, "explorer.html"
 
     files, warnings = build_html(Documents(documents, extra, context, add_pages))
     source.troubles += warnings
@@ -78,21 +81,23 @@ def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
     """Return scripts, packages, data of the lessons and tables; a missing package adds to `source.troubles`."""
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
-    parts: dict[str, Callable[[], Files]] = {
-        **{f"{package.name} ({package.use})": partial(fetch_package, package, source.cache) for package in PACKAGES},
-        "Munk2D (the engine in pymunk)": lambda: {ENGINE_FILES["munk2d"]: compile_munk2d(source.cache)},
-    }
-    for name, make in parts.items():
+    files[ENGINE_FILES["munk2d"]] = COMPILED.read_bytes()
+    for package in PACKAGES:
         try:
-            files |= make()
+            files |= fetch_package(package, source.cache)
         except NotFetched as reason:
-            source.troubles.append(f"Built without {name}: {reason}.")
+            source.troubles.append(f"Built without {package.name} ({package.use}): {reason}.")
     for live in {live.key: live for lesson in lessons for live in lesson.scenes}.values():
         files[f"live/{live.key}.json"] = _json(data(live, source.answers))
     files |= {f"results/{name}": text.encode() for name, text in source.tables.items()}
     csv = [source.tables.get(f"{name}.csv", "") for name in ("errors", "timings", "descriptions")]
     files["results/rows.json"] = _json(explored(*csv))
     return files
+
+
+def _without(source: SiteSource, package: Package) -> list[str]:
+    """Return the sentence that says why a package is missing, if it is."""
+    return [trouble for trouble in source.troubles if trouble.startswith(f"Built without {package.name} ")]
 
 
 def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:

@@ -1,7 +1,7 @@
-"""Third-party files of the site: npm packages, and Munk2D, the engine inside pymunk, compiled by emscripten.
+"""The npm packages of the site.
 
 The build fetches the packages, checks their digests and stores them in a folder `cache`. Pages fetch nothing from other
-servers. Without npm, emscripten or a network the site is built without the corresponding files.
+servers. Without npm or a network the site is built without the packages.
 """
 
 from __future__ import annotations
@@ -14,25 +14,13 @@ import subprocess
 import tarfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from reports.model.ending import BadInput
-from reports.model.fingerprint import digest
 from reports.run.files import temporary_folder
-from reports.run.installed import sources
 
 PATIENCE = 180  # s: timeout for one package.
 ANSWERING = 8  # s: timeout of a query to a registry; it is short, since the network may be missing.
-COMPILING = 600  # s: timeout of emscripten, which builds its own library first.
-SHIM = Path(__file__).with_name("munk2d.c")
-# At -O2 emscripten 3.1.6 of Debian fails in a later step.
-FLAGS = (
-    *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web,worker"),
-    *("-sEXPORTED_FUNCTIONS=_munk_run,_malloc,_free", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0"),
-)
-THREADED = "cpHastySpace.c"  # a source file that needs threads, which the page does not have
 
 
 @dataclass(frozen=True)
@@ -87,31 +75,6 @@ def fetch_package(package: Package, cache: Path) -> dict[str, bytes]:
         raise NotFetched(f"{package.name} {package.version} has an unexpected digest")
     with tarfile.open(path, encoding="utf-8") as opened:
         return {name: opened.extractfile(f"package/{part}").read() for part, name in package.files}  # type: ignore[union-attr]
-
-
-def compile_munk2d(cache: Path) -> bytes:
-    """Return Munk2D as one JavaScript file. Raises NotFetched."""
-    compiler = shutil.which("emcc")
-    if compiler is None:
-        raise NotFetched("emscripten is not installed")
-    release = version("pymunk")
-    compiler_version = printed([compiler, "--version"], "emcc --version failed", COMPILING).splitlines()
-    parts = (release, SHIM.read_text(encoding="utf-8"), " ".join(FLAGS), *compiler_version[:1])
-    path = cache / f"munk2d-{digest(repr(parts))}.js"
-    if not path.is_file():
-        cache.mkdir(parents=True, exist_ok=True)
-        with temporary_folder(cache) as folder:
-            try:  # pip may wait for the timeout twice
-                options = ("--retries", "0", "--timeout", str(ANSWERING // 2))
-                engine = sources("pymunk", release, folder, *options) / "Munk2D"
-            except BadInput as reason:
-                raise NotFetched(str(reason)) from None
-            files = sorted(str(path) for path in (engine / "src").glob("*.c") if path.name != THREADED)
-            output = folder / "munk2d.mjs"
-            command = [compiler, *FLAGS, f"-I{engine / 'include'}", str(SHIM), *files, "-o", str(output)]
-            printed(command, "emscripten refuses Munk2D", COMPILING)
-            output.replace(path)
-    return path.read_bytes()
 
 
 def printed(command: Sequence[str], trouble: str, patience: float, **given: Any) -> str:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What tests/reports/test_site_in_browser.py needs, on Debian: a browser, npm for packages of the site, emscripten for Munk2D.
+# What tests/reports/test_site_in_browser.py needs, on Debian: a browser, and npm for packages of the site.
 # Run it as root, with the environment active; it takes about two minutes.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -7,7 +7,6 @@ wanted=()
 command -v chromium > /dev/null || wanted+=(chromium)
 # A Node.js that is no package of Debian's brings its own npm, beside which Debian's can't be installed.
 command -v npm > /dev/null || wanted+=(nodejs npm)
-command -v emcc > /dev/null || wanted+=(emscripten)
 if [ "${#wanted[@]}" -gt 0 ]; then
   apt-get update
   apt-get install --yes --no-install-recommends "${wanted[@]}"

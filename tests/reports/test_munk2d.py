@@ -1,0 +1,79 @@
+"""Tests of the compiled Munk2D: it is from the present sources, and it computes the motions of Python's pymunk."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import shutil
+import subprocess
+from importlib.metadata import version
+
+import numpy as np
+import pytest
+
+from reports.site.lessons import LESSONS
+from reports.site.live.data import data
+from reports.site.munk2d import COMPILED, SHIM, compiled_from, source_digest
+
+COMPILED_RELEASE, COMPILED_DIGEST = compiled_from(COMPILED.read_text("utf-8"))
+LIVES = {f"{lesson.name}, {live.word}": live for lesson in LESSONS for live in lesson.scenes}
+# Relative difference from Python's pymunk. The polygonal gears amplify rounding by about 1e7 (measured: 3e-7).
+APART = {"gears, two gears": 1e-5}
+# Runs each method of pymunk in the page at its start settings; `window` and `document` make Node a browser.
+NODE = """
+globalThis.window = globalThis;
+globalThis.document = {};
+const { runMunk } = await import("./live_engines.js");
+const { runOf, modelOf } = await import("./live_data.js");
+const munk = await (await import("./munk2d.js")).default({});
+const scene = JSON.parse((await import("node:fs")).readFileSync(0, "utf8"));
+const motions = scene.munk.map((method, munkPlace) => {
+  const own = { start: null, iterations: null, bias: null };
+  const setting = { place: START, stepPlace: 0, steps: STEPS, munk: munkPlace, ...own };
+  const run = runOf(setting, scene);
+  return "why" in method ? null : [...runMunk(munk, run).pose].map((value) => (Number.isFinite(value) ? value : null));
+});
+console.log(JSON.stringify(motions));
+"""
+
+
+def test_the_compiled_munk2d_is_from_the_present_sources_and_small():
+    assert source_digest(COMPILED_RELEASE) == COMPILED_DIGEST, (
+        f"{SHIM.name} has changed: python -m reports.site.munk2d compiles it"
+    )
+    assert source_digest("1.0") != COMPILED_DIGEST
+    assert len(gzip.compress(COMPILED.read_bytes(), 9)) < 100_000
+    assert compiled_from("no header") == ("", "")
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no Node.js is installed")
+@pytest.mark.skipif(version("pymunk") != COMPILED_RELEASE, reason="another release of pymunk is installed")
+@pytest.mark.parametrize("name", LIVES)
+def test_the_compiled_munk2d_computes_the_motions_of_python(name, tmp_path):
+    live = LIVES[name]
+    for path in (COMPILED, *(SHIM.parent / "assets").glob("*.js")):
+        shutil.copy(path, tmp_path)
+    (tmp_path / "package.json").write_text('{"type": "module"}')
+    scenes, steps = list(live.places()), live.steps[live.start]
+    script = NODE.replace("START", str(scenes.index(live.scene))).replace("STEPS", str(steps))
+    (tmp_path / "run.js").write_text(script)
+    ended = subprocess.run(
+        ["node", "run.js"],
+        input=json.dumps(data(live, {})),
+        cwd=tmp_path,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    assert ended.returncode == 0, ended.stderr
+    compared = 0
+    for page, (_, engine) in zip(json.loads(ended.stdout), live.munk, strict=True):
+        if page is None:
+            continue
+        samples = live.samples(steps)
+        python = engine.build(live.scene.mechanism(), live.scene.duration / steps)(samples, steps // samples).pose
+        pose = np.reshape(np.array(page, dtype=float), python.shape)
+        size = max(1.0, float(np.abs(python).max()))
+        assert np.abs(pose - python).max() < APART.get(name, 1e-12) * size
+        compared += 1
+    assert compared > 0
