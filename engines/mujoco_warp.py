@@ -98,20 +98,18 @@ class MuJoCoWarp(MuJoCoOnDevice):
 
 
 @cache
-def load_packages(device: str) -> tuple[Any, Any]:
-    """(warp, mujoco_warp); raises Unsupported where Warp has no such device."""
+def load_warp(device: str) -> Any:
+    """The module warp, which prints errors alone; raises Unsupported where it has no such device."""
     with quiet():  # Warp prints that there is no driver of CUDA
         import warp
 
         warp.config.log_level = warp.LOG_ERROR
         warp.init()
-        import mujoco_warp
-
         try:
             warp.get_device(device)
         except (RuntimeError, ValueError):
             raise Unsupported(f"Warp finds no device {device!r} here") from None
-    return warp, mujoco_warp
+    return warp
 
 
 class WarpModel:
@@ -120,7 +118,10 @@ class WarpModel:
     def __init__(self, model: MuJoCoModel, tolerance: float) -> None:
         """tolerance: that of the settings, before it was scaled by the inertia that is free."""
         self.model, self.device = model, chosen_device()
-        self.warp, self.mujoco_warp = load_packages(self.device)
+        self.warp = load_warp(self.device)
+        with quiet():
+            import mujoco_warp
+        self.mujoco_warp = mujoco_warp
         with self.warp.ScopedDevice(self.device):
             self.start = model.start()
             self.held = self.mujoco_warp.put_model(model.compiled)

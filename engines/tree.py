@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict, deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 TreeJoint = Pin | Slot | Weld  # the joints that may connect a link to its parent
+Connecting = TypeVar("Connecting", bound=TreeJoint)
 
 # CPU time of `pushes` [s].
 TREE_FORCES_COST = 250e-6
@@ -270,7 +271,7 @@ def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
     connecting: set[str] = set()
     order = (Weld, Pin, Slot)
     candidates = sorted(joints, key=lambda joint: order.index(type(joint))) if hanging else []
-    for name, parent, joint in _with_parents(mechanism, candidates):
+    for name, parent, joint in with_parents(mechanism, candidates):
         body, column = mechanism.body_index(name), links[-1].columns.stop if links else 0
         if joint is None:
             links.append(Link(body, None, "free", column))
@@ -291,10 +292,12 @@ def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
     return Tree(mechanism, tuple(links), tuple(joint for joint in joints if joint.name not in connecting), tuple(kept))
 
 
-def _with_parents(mechanism: Mechanism, joints: list[TreeJoint]) -> Iterator[tuple[str, str | None, TreeJoint | None]]:
+def with_parents(
+    mechanism: Mechanism, joints: Sequence[Connecting]
+) -> Iterator[tuple[str, str | None, Connecting | None]]:
     """The bodies in the order of the tree, each with its parent and the joint between them, or twice None if free."""
     placed: set[str | None] = {None}
-    joints_of = defaultdict[str | None, list[TreeJoint]](list)
+    joints_of = defaultdict[str | None, list[Connecting]](list)
     for joint in joints:
         joints_of[joint.first].append(joint)
         joints_of[joint.second].append(joint)

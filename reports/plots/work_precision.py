@@ -214,6 +214,7 @@ ENGINE_NAMES = {
     "bullet": "Bullet",
     "drake": "Drake",
     "mujoco-warp": "MuJoCo Warp",
+    "newton": "Newton",
     EXACT_SOLVER: "plain code, exact multipliers",
 }
 

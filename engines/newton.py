@@ -1,0 +1,259 @@
+"""Newton under test: its solvers Kamino, for closed loops, and XPBD, in single precision on the processor or a GPU.
+
+Bodies are free and all joints are constraints: a Pin is a revolute joint about z, and a Weld a fixed one. A loop is
+closed by a joint outside the articulations, as in Newton's examples. Our code computes force elements before every
+step and passes them as forces on bodies. Accelerations are changes of velocity over the last step.
+
+*default* is Kamino as shipped, with its backend PADMM and `alpha` 0.01: a step closes 1 % of a gap, so at 1 ms the free
+four-bar is wrong by 0.074 rad, as in other engines that close gaps slowly. *tuned* is its backend LOX, which Newton
+calls experimental, with its own settings: 5.7e-3 rad, a tenth of the time, and an error that falls with the step.
+*whole gap* is PADMM with `alpha` 1: 7.1e-3 rad. In single precision PADMM has an error of 2e-3 rad at 0.25 ms with any
+`alpha`, and the backend DVI 0.06 rad. *xpbd* is XPBD as shipped, with 2 iterations: 0.73 rad. With 200 iterations and
+a quarter of the step it is 0.50 rad, and with larger relaxations the loop opens.
+
+Kamino makes room for 1000 contacts where a model has none, and then computes with matrices of that size: a step takes
+50 ms. Our adapter sets the model's `rigid_contact_max` to 1, and a step takes 1.5 ms with the same numbers. A step is
+captured as a graph (`warp.ScopedCapture`), as Newton's examples do on a GPU.
+
+`SolverMuJoCo` is MuJoCo Warp, which is an engine of its own here. `SolverFeatherstone` ignores a joint that closes a
+loop without a word. Both are refused by name.
+
+Warp compiles kernels when they are first used, which takes a minute or two on a new computer, and keeps them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engines.capability import Capability, Lack
+from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
+from engines.motions import over_three
+from engines.mujoco_warp import load_warp
+from engines.on_device import chosen_device
+from engines.sampling import sampled_with_differences, unwrapped
+from engines.single_run import ExtraEngine, Recorded, quiet
+from engines.tree import with_parents
+from reference.checks import Count, Fraction, Name, validated
+from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
+from reference.mechanism import Mechanism
+from reference.rolling.roll import Roll
+
+Array = NDArray[np.float64]
+NEWTON_FORCES_COST = 150e-6  # CPU time [s] of the force elements at one state
+# CPU time [s] of a step of three bodies, by solver and backend.
+NEWTON_STEP_COSTS = {"padmm": 1.5e-3, "dvi": 0.2e-3, "lox": 0.16e-3, "xpbd": 5e-6}
+# Solvers of Newton that this adapter refuses, with the reason.
+REFUSED_SOLVERS = {
+    "mujoco": "newton's SolverMuJoCo is MuJoCo Warp, which is the engine mujoco-warp here",
+    "featherstone": "newton's SolverFeatherstone ignores a joint that closes a loop without a word",
+}
+
+
+@dataclass(frozen=True)
+class Newton(ExtraEngine):
+    """An engine in the sense of `engines.Engine`.
+
+    solver: "kamino" or "xpbd"
+    backend: of Kamino, "padmm", "dvi" or "lox"
+    alpha: fraction of a gap that a step of Kamino closes; not of LOX
+    iterations: of XPBD
+    """
+
+    name = "newton"
+    packages = ("newton", "warp-lang")
+    modules: ClassVar[tuple[str, ...]] = ("warp", "newton")
+    build_time: ClassVar[float] = 5.0
+    precision: ClassVar[float] = 2.0**-23
+    forces_by: ClassVar[Enforcement] = "ours"
+    capability: ClassVar[Capability] = Capability(
+        "newton",
+        (Pin, Weld),
+        lacks={
+            Slot: Lack("our adapter of newton builds no joint that slides and turns"),
+            Drive: Lack("our adapter of newton builds no motor"),
+            Rod: Lack("our adapter of newton builds no distance between points"),
+            Gear: Lack("our adapter of newton builds no gear"),
+            Skate: Lack("newton stops slip by friction at a contact, and our adapter builds no contact"),
+            Roll: Lack("in newton a disc rolls by contact and friction, and our adapter builds no contact"),
+        },
+    )
+
+    variant: Name
+    solver: str = "kamino"
+    backend: str = "padmm"
+    alpha: Fraction = 0.01
+    iterations: Count = 2
+
+    @validated
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+        """Not declared: the error does not fall with the step to a limit that Newton documents."""
+        return NotDeclared("newton closes gaps by fractions and residuals, in single precision")
+
+    @validated
+    def step_cost(self, mechanism: Mechanism) -> float:
+        """Approximate CPU time of a step [s]."""
+        step = NEWTON_STEP_COSTS[self.backend if self.solver == "kamino" else "xpbd"]
+        return step * over_three(mechanism) + (NEWTON_FORCES_COST if mechanism.forces else 0.0)
+
+    def model(self, mechanism: Mechanism, dt: float) -> NewtonModel:
+        if self.solver in REFUSED_SOLVERS:
+            joints = ", ".join(repr(joint.name) for joint in mechanism.joints) or "none"
+            raise Unsupported(f"joints {joints}: {REFUSED_SOLVERS[self.solver]}")
+        return NewtonModel(self, mechanism, dt)
+
+
+@cache
+def load_newton(device: str) -> tuple[Any, Any]:
+    """The modules warp and newton; raises Unsupported where Warp has no such device."""
+    warp = load_warp(device)
+    with quiet():
+        import newton
+
+    return warp, newton
+
+
+class NewtonModel:
+    """The engine's objects for one mechanism, with a graph for each direction between two states."""
+
+    def __init__(self, engine: Newton, mechanism: Mechanism, dt: float) -> None:
+        self.engine, self.mechanism, self.dt, self.device = engine, mechanism, dt, chosen_device()
+        self.warp, self.newton = load_newton(self.device)
+        with quiet(), self.warp.ScopedDevice(self.device):
+            self.model = self._described()
+            self.solver, self.control = self._solver(), self.model.control()
+        bodies = len(mechanism.bodies)
+        rows = sum(5 if isinstance(joint, Pin) else 6 for joint in mechanism.joints)
+        self.size = Size(bodies, 3 * bodies, mechanism.row_count, rows)
+
+    def _transform(self, x: float, y: float, angle: float = 0.0) -> Any:
+        warp = self.warp
+        return warp.transform(warp.vec3(x, y, 0.0), warp.quat_from_axis_angle(warp.vec3(0.0, 0.0, 1.0), angle))
+
+    def _described(self) -> Any:
+        """Newton's model of the mechanism."""
+        warp, gravity = self.warp, (*self.mechanism.gravity, 0.0)
+        builder = self.newton.ModelBuilder(up_axis=self.newton.Axis.Y, gravity=gravity)
+        if self.engine.solver == "kamino":
+            self.newton.solvers.SolverKamino.register_custom_attributes(builder)
+        for body in self.mechanism.bodies:
+            inertia = [value for row in np.diag([body.inertia] * 3).tolist() for value in row]
+            x, y, angle = map(float, body.pose)
+            frame = self._transform(x, y, angle)
+            builder.add_link(xform=frame, mass=float(body.mass), inertia=warp.mat33(*inertia))
+        self._add_joints(builder)
+        model = builder.finalize(device=self.device)
+        model.rigid_contact_max = 1  # with None, Kamino makes room for 1000
+        return model
+
+    def _add_joints(self, builder: Any) -> None:
+        """Add the joints of trees, of which Newton makes articulations, and then those that close loops."""
+        joints = [joint for joint in self.mechanism.joints if isinstance(joint, Pin | Weld)]
+        trees: list[list[tuple[str, str | None, Pin | Weld | None]]] = []
+        of_body: dict[str, list[tuple[str, str | None, Pin | Weld | None]]] = {}
+        for child, parent, joint in with_parents(self.mechanism, joints):
+            if parent is None:
+                trees.append([])
+            of_body[child] = trees[-1] if parent is None else of_body[parent]
+            of_body[child].append((child, parent, joint))
+        for tree in trees:  # Newton numbers the joints of an articulation without gaps
+            numbers = []
+            for child, parent, joint in tree:
+                if joint is None:
+                    numbers.append(builder.add_joint_free(child=self.mechanism.body_index(child)))
+                else:
+                    numbers.append(self._add_joint(builder, joint, parent))
+                    joints.remove(joint)
+            builder.add_articulation(numbers)
+        for joint in joints:
+            self._add_joint(builder, joint, joint.first)
+
+    def _add_joint(self, builder: Any, joint: Pin | Weld, parent: str | None) -> int:
+        """Add a joint whose parent is this body, or the ground where one of its bodies is the ground."""
+        ends = [(joint.first, joint.first_point), (joint.second, joint.second_point)]
+        if joint.second is None or (joint.first is not None and joint.first != parent):
+            ends.reverse()
+        places: list[tuple[int, tuple[float, float], float]] = []
+        for name, point in ends:
+            body = -1 if name is None else self.mechanism.body_index(name)
+            places.append((body, point, 0.0 if body < 0 else float(self.mechanism.pose[body, 2])))
+        (first, point, angle), (second, other_point, other_angle) = places
+        # The frames of a fixed joint coincide: the parent's is turned by the angle between the bodies.
+        turned = other_angle - angle if isinstance(joint, Weld) else 0.0
+        frames = {"parent_xform": self._transform(*point, turned), "child_xform": self._transform(*other_point)}
+        if isinstance(joint, Weld):
+            return builder.add_joint_fixed(first, second, **frames)
+        return builder.add_joint_revolute(first, second, axis=self.warp.vec3(0.0, 0.0, 1.0), **frames)
+
+    def _solver(self) -> Any:
+        solvers = self.newton.solvers
+        if self.engine.solver == "xpbd":
+            return solvers.SolverXPBD(self.model, iterations=self.engine.iterations)
+        config = solvers.SolverKamino.Config(dynamics_solver=self.engine.backend)
+        if self.engine.backend != "lox":
+            config.constraints.alpha = self.engine.alpha
+        return solvers.SolverKamino(self.model, config=config)
+
+    def _start(self) -> Any:
+        state = self.model.state()
+        twist = np.zeros((len(self.mechanism.bodies), 6), dtype=np.float32)
+        twist[:, [0, 1, 5]] = self.mechanism.twist
+        state.body_qd.assign(twist)
+        return state
+
+    def record(self, samples: int, every: int) -> Recorded:
+        with quiet(), self.warp.ScopedDevice(self.device):
+            return self._record(samples, every)
+
+    def _record(self, samples: int, every: int) -> Recorded:
+        warp, states, last = self.warp, [self._start(), self._start()], self.mechanism.pose[:, 2].copy()
+        self.solver.step(self._start(), self._start(), self.control, None, self.dt)  # compiles or loads the kernels
+        self.solver = self._solver()  # without the forces of that step
+        graphs = []
+        for now, then in ((states[0], states[1]), (states[1], states[0])):
+            with warp.ScopedCapture() as capture:
+                self.solver.step(now, then, self.control, None, self.dt)
+            graphs.append(capture.graph)
+
+        def advance(count: int) -> None:
+            for _ in range(count):
+                if self.mechanism.forces:
+                    pose, twist = self._state(states[0])
+                    last[:] = pose[:, 2] + 2 * np.pi * np.round((last - pose[:, 2]) / (2 * np.pi))
+                    pose[:, 2] = last  # a torsion spring needs whole turns too
+                    states[0].body_f.assign(self._forces(pose, twist))
+                warp.capture_launch(graphs[0])
+                states.reverse()
+                graphs.reverse()
+
+        *recorded, stepping = sampled_with_differences(
+            (samples, every), self.dt, advance, lambda: self._state(states[0]), lambda: self._state(states[0])[1]
+        )
+        pose, twist, acceleration = recorded
+        pose[..., 2] = unwrapped(pose[..., 2], twist[..., 2], self.mechanism.pose[:, 2], every * self.dt)
+        mass, inertia = self.model.body_mass.numpy(), self.model.body_inertia.numpy()[:, 2, 2]
+        inertias = np.stack([mass, mass, inertia], axis=-1).astype(float)
+        gravity = np.array(self.model.gravity.numpy()).reshape(-1)[:2].astype(float)
+        return Recorded(pose, twist, acceleration, stepping, inertias, gravity)
+
+    def _state(self, state: Any) -> tuple[Array, Array]:
+        """Poses, whose angles are within a turn, and twists (bodies, 3)."""
+        place, twist = state.body_q.numpy().astype(float), state.body_qd.numpy().astype(float)
+        angle = 2 * np.arctan2(place[:, 5], place[:, 6])
+        return np.column_stack([place[:, :2], angle]), twist[:, [0, 1, 5]]
+
+    def _forces(self, pose: Array, twist: Array) -> NDArray[np.float32]:
+        pushed = np.zeros((len(pose), 6), dtype=np.float32)
+        pushed[:, [0, 1, 5]] = self.mechanism.applied.on(pose, twist)
+        return pushed
+
+
+DEFAULT = Newton("default")
+TUNED = Newton("tuned", backend="lox")
+WHOLE_GAP = Newton("whole gap", alpha=1.0)
+XPBD = Newton("xpbd", "xpbd")
+VARIANTS = (DEFAULT, TUNED, WHOLE_GAP, XPBD)

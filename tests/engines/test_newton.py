@@ -1,0 +1,62 @@
+"""Newton: motions of Kamino against the judge, refusals, and what its adapter says about the engine.
+
+Warp compiles its kernels for minutes on a new computer, so the tests that run it are slow ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engines import Unsupported, newton
+from reference.joints import Pin
+from reference.scenes.catalogue import scene
+from tests.engines.test_promised import FLYING, LOOPS, MECHANISMS, PINNED, SAMPLES, exact, installed, span
+
+BUILT = sorted({*PINNED, *FLYING, *LOOPS, "spring", "damper"})
+
+
+@pytest.fixture
+def with_newton() -> None:
+    installed(newton.DEFAULT)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("with_newton")
+@pytest.mark.parametrize("solver", ["featherstone", "mujoco"])
+def test_a_solver_that_ignores_loops_or_is_another_engine_is_refused_by_name(solver):
+    engine = replace(newton.DEFAULT, solver=solver)
+    with pytest.raises(Unsupported, match=newton.REFUSED_SOLVERS[solver]):
+        engine.build(scene("free_four_bar").mechanism(), 1e-3)
+
+
+def test_joints_that_are_not_built_are_refused_by_name():
+    with pytest.raises(Unsupported, match="'motor': our adapter of newton builds no motor"):
+        newton.DEFAULT.build(MECHANISMS["a drive against its pin"], 1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("with_newton")
+@pytest.mark.parametrize("name", BUILT)
+def test_kamino_moves_with_the_error_of_semi_implicit_euler(name):
+    """The largest error at these steps is 9e-3, of a chain of ten, and 3 % of the motion."""
+    run = newton.TUNED.build(MECHANISMS[name], span(name) / SAMPLES / 80)(SAMPLES, 80)
+    moved = np.abs(exact(name) - exact(name)[0]).max()
+    assert np.abs(run.pose - exact(name)).max() < 1e-6 + 0.03 * moved
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("with_newton")
+def test_the_order_and_the_bodies_of_joints_do_not_matter():
+    linkage = scene("free_four_bar").mechanism()
+    pins = [joint for joint in linkage.joints if isinstance(joint, Pin)]
+    swapped = [
+        replace(pin, first=pin.second, second=pin.first, first_point=pin.second_point, second_point=pin.first_point)
+        for pin in reversed(pins)
+    ]
+    right, other = (
+        newton.TUNED.build(replace(linkage, joints=tuple(joints)), 1e-3)(5, 20).pose for joints in (pins, swapped)
+    )
+    assert np.abs(right - other).max() < 1e-3 * np.abs(right - right[0]).max()
