@@ -217,12 +217,14 @@ def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[
                 "after": live.located(experiment.after),
                 "shown": " ".join(("paths", *experiment.overlays)),
                 "more": None if body is None else {"heading": experiment.section, "body": Markup(body)},
+                "widget": experiment.widget,
             }
         )
     return {
         "title": lesson.title,
         "lesson": lesson,
         "parts": parts,
+        "render": lambda text: Markup(render_html(text)),
         "scenes": [{"key": live.key, "fields": [slider.field for slider in live.sliders]} for live in lesson.scenes],
         "picture": Markup(first_picture(lesson.scene(lesson.experiments[0].scene))),
         "settings": ENGINES,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -33,7 +34,7 @@ class Experiment:
     before: values of controls; the other controls have their start values. after: the values that change. claims:
     claims on this change. causes: further changes, each with a claim relative to the errors after the first change;
     they test the cause that the text gives. overlays: names of overlays in addition to the paths. section: heading of
-    the quoted section of the Markdown page.
+    the quoted section of the Markdown page. widget: name of a script in assets that draws below the text.
     """
 
     scene: str
@@ -43,6 +44,18 @@ class Experiment:
     causes: tuple[tuple[Mapping[str, Any], Claim], ...] = ()
     overlays: tuple[str, ...] = ()
     section: str = ""
+    widget: str = ""
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """An exercise; `answer` names the function of assets/exercises.js that computes the answer in `unit`."""
+
+    heading: str
+    answer: str
+    unit: str
+    text: str
+    solution: str
 
 
 @dataclass(frozen=True)
@@ -71,10 +84,20 @@ class Lesson:
         return next(live for live in self.scenes if live.word == word)
 
     @cached_property
+    def _texts(self) -> tuple[str, str]:
+        """The text of the parts and the text of the exercises."""
+        text, _, exercises = (FOLDER / f"{self.name}.md").read_text(encoding="utf-8").partition("\n## Exercises\n")
+        return text, exercises
+
+    @property
+    def exercises(self) -> tuple[Exercise, ...]:
+        """The exercises, which are at the end of the lesson. Raises ValueError for a text that has another form."""
+        return tuple(exercise_of(text) for text in self._texts[1].split("\n### ")[1:])
+
+    @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The texts of each experiment. Raises ValueError if the number of texts is wrong."""
-        text = (FOLDER / f"{self.name}.md").read_text(encoding="utf-8")
-        parts = tuple(part_of(part) for part in text.split("\n## ")[1:])
+        parts = tuple(part_of(part) for part in self._texts[0].split("\n## ")[1:])
         if len(parts) != len(self.experiments):
             raise ValueError(f"lesson {self.name!r}: words for {len(parts)} of {len(self.experiments)} experiments")
         return parts
@@ -101,6 +124,15 @@ def part_of(text: str) -> Part:
         tuple((answer.strip("*"), answer.startswith("**")) for answer in answers),
         "\n".join(explanation).strip(),
     )
+
+
+def exercise_of(text: str) -> Exercise:
+    """Parse "heading: `answer` [unit]", a text and a quotation with the solution. Raises ValueError for other texts."""
+    match = re.fullmatch(r"(.+): `(\w+)` \[(.+)\]\n\n(.+?)\n\n((?:>.*\n?)+)", text.strip(), re.DOTALL)
+    if match is None:
+        raise ValueError(f"{text.partition(chr(10))[0]!r}: an exercise has a heading, an answer, a unit and a solution")
+    heading, answer, unit, question, solution = match.groups()
+    return Exercise(heading, answer, unit, question, re.sub("^> ?", "", solution, flags=re.MULTILINE))
 
 
 @dataclass

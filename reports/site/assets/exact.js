@@ -145,6 +145,29 @@ function offsetsOf({ drives }, pose) {
   return drives.map(({ first, second }) => angle(second) - angle(first));
 }
 
+/** Return the twists of a mechanism at rest or driven: drives as [first, second, rate].
+ * @param {Mechanism} mechanism @param {[number, number, number][]} drives */
+export function rates(mechanism, drives) {
+  return released({ ...mechanism, drives: drives.map(([first, second, rate]) => ({ first, second, rate })) }, mechanism.pose).twist;
+}
+
+/** Return the number of degrees of freedom without drives, from the rank of the equations. @param {Mechanism} mechanism */
+export function freedoms(mechanism) {
+  const left = rows(mechanism, mechanism.pose, mechanism.twist, null).map(({ columns }) => columns);
+  let rank = 0;
+  for (let column = 0; column < mechanism.pose.length; column++) {
+    const pivot = left.slice(rank).reduce((best, row) => (Math.abs(row[column]) > Math.abs(best[column]) ? row : best), left[rank] ?? []);
+    if (!(Math.abs(pivot[column]) > 1e-9)) continue;
+    left.splice(left.indexOf(pivot), 1);
+    left.splice(rank++, 0, pivot);
+    for (const row of left.slice(rank)) {
+      const share = row[column] / pivot[column];
+      row.forEach((value, k) => (row[k] = value - share * pivot[k]));
+    }
+  }
+  return mechanism.pose.length - rank;
+}
+
 /** Return poses and twists at `samples` intervals of `spacing` [s], and the forces of joints on their second bodies [N],
  * by steps of STEP / `finer` or less. @param {Mechanism} mechanism @param {number} samples @param {number} spacing @param {number} finer */
 export function motion(mechanism, samples, spacing, finer = 1) {

@@ -9,7 +9,7 @@ export class Form {
   /** @param {HTMLElement} root */
   constructor(root) {
     this.root = root;
-    this.form = /** @type {HTMLFormElement} */ (root.querySelector("form"));
+    this.form = /** @type {HTMLFormElement} */ (root.querySelector(".settings form"));
     this.choice = /** @type {HTMLSelectElement} */ (this.form.elements.namedItem("scene"));
     this.inputs = /** @type {HTMLInputElement[]} */ ([...this.form.querySelectorAll("input[name]")]);
     this.scenes = JSON.parse(root.dataset.scenes ?? "[]");

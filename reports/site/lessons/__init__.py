@@ -3,11 +3,12 @@
 from engines import Engine
 from reference.scene import Scene
 from reports.site.animated import Take
+from reports.site.lessons.chains import CHAINS
 from reports.site.lessons.linkages import CENTRODES, FOUR_BAR, PENDULUM, SLIDER_CRANK
 from reports.site.lessons.rolling import GEARS, ROLLING
 from reports.site.lessons.skates import SKATE, WHEELS
 
-LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, SKATE, WHEELS, ROLLING, GEARS, CENTRODES)
+LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, WHEELS, ROLLING, GEARS, CENTRODES)
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:
