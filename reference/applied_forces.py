@@ -28,7 +28,7 @@ class ForceGroup:
 
 @dataclass(frozen=True)
 class AppliedForces:
-    """The force elements of a mechanism; `bodies` is the number of its bodies."""
+    """The force elements of a mechanism with this number of `bodies`."""
 
     groups: tuple[ForceGroup, ...]
     bodies: int
@@ -36,7 +36,7 @@ class AppliedForces:
 
     @classmethod
     def of(cls, forces: Sequence[ForceElement], index: Mapping[str | None, int]) -> AppliedForces:
-        """Group the elements by class; `index` has the index of each body by name, and under None the ground's."""
+        """Group the elements by class; the key None of `index` is the ground."""
         by_class: dict[type, list[Any]] = {}
         coupled: list[tuple[CoupledForce, Ends]] = []
         for element in forces:
@@ -67,7 +67,7 @@ class AppliedForces:
         for group in self.groups:
             ends = (poses[..., group.first, :], poses[..., group.second, :])
             forces = group.element.on(*ends, twists[..., group.first, :], twists[..., group.second, :])
-            for index in range(len(group.first)):  # in a loop, since several elements may act on one body
+            for index in range(len(group.first)):  # a loop, since several elements may act on one body
                 out[..., group.first[index], :] += forces[..., index, :3]
                 out[..., group.second[index], :] += forces[..., index, 3:]
         for element, ends in self.coupled:

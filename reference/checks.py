@@ -2,9 +2,9 @@
 
 The fields of a frozen dataclass that inherits from `Valid` are checked when it is made, the arguments of a function
 with `validated` when it is called. Both raise InvalidMechanism, a ValueError, with a sentence that states which value
-is wrong, why, and which values are valid. Values become plain: numpy's numbers become Python's; lists and arrays become
-tuples or arrays of floats, as declared. So equal settings have equal reprs. Relations between values (lengths that
-assemble) are checked by the class itself. `reference.validators` has the validators.
+is wrong, why, and which values are valid. Numpy's numbers become Python's; lists and arrays become tuples or arrays of
+floats, as declared. So equal settings have equal reprs. Relations between values (lengths that assemble) are checked by
+the class itself. `reference.validators` has the validators.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ Times = Annotated[
 
 
 class InvalidMechanism(ValueError):
-    """An invalid body, joint, setting or argument: which value, why, and which values are valid."""
+    """An invalid body, joint, setting or argument; the message states the value, the reason and the valid values."""
 
 
 class NotFinite(InvalidMechanism, ArithmeticError):
@@ -56,13 +56,13 @@ def short_repr(value: Any) -> str:
     """A value in one short line."""
     try:
         text = " ".join(repr(value).split())
-    except Exception:  # a whole number of too many digits, an object that can't be printed
+    except Exception:  # an int has too many digits, or the object can't be printed
         text = f"something of the type {type(value).__name__}"
     return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 3]}..."
 
 
 def refusal(owner: str, name: str, value: Any, words: str) -> InvalidMechanism:
-    """The error for a value that does not have the required property; NotFinite for numbers with an infinity or NaN."""
+    """The error for a value without the required property: NotFinite for an infinity or NaN, else InvalidMechanism."""
     plain = isinstance(value, float | complex | np.ndarray | np.generic) and np.asarray(value).dtype.kind in "fc"
     error = NotFinite if plain and not np.isfinite(value).all() else InvalidMechanism
     return error(f"{owner}: {name} is {short_repr(value)}; it must be {words}")
@@ -106,7 +106,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def validated(function: Function) -> Function:
     """Check a function's arguments by their annotations before it runs; the object of a method is not checked.
 
-    For functions that users call. Loops call an unchecked function at every step.
+    Functions that users call are validated; loops call unchecked functions.
     """
     parameters = inspect.signature(function).parameters.values()
     names = [item.name for item in parameters if item.kind not in (item.VAR_KEYWORD, item.VAR_POSITIONAL)]
@@ -129,7 +129,7 @@ def validated(function: Function) -> Function:
         named = {name: take_argument(name, value) for name, value in named.items()}
         try:
             return function(*plain, **named)
-        except ArithmeticError as reason:  # a division by zero, a number too large, a root that is not found
+        except ArithmeticError as reason:  # such as a division by zero, an overflow or a root that is not found
             if isinstance(reason, InvalidMechanism):
                 raise
             raise InvalidMechanism(
@@ -141,17 +141,17 @@ def validated(function: Function) -> Function:
 
 
 def index_of(owner: str, name: str, value: int, count: int) -> int:
-    """An index below `count`; InvalidMechanism for any other number."""
+    """Return an index between 0 and `count` - 1; raise InvalidMechanism for other values."""
     return validate(owner, name, value, Annotated[int, from_to(0, count - 1)])
 
 
 def sample_times(owner: str, t: ArrayLike) -> Floats:
-    """One time or several [s] as an array (times,); InvalidMechanism unless all are finite and not negative."""
+    """Return times [s] as an array (times,); raise InvalidMechanism unless all are finite and not negative."""
     return np.atleast_1d(np.asarray(validate(owner, "t", t, Times), dtype=float))
 
 
 def validate(owner: str, name: str, value: Any, annotation: Any) -> Any:
-    """Check one value as a field or an argument with this annotation is checked, and return the plain value."""
+    """Check one value by its annotation, and return the plain value."""
     kind = validator_of(annotation)
     taken = kind.validate(value)
     if taken is INVALID:

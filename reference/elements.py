@@ -23,7 +23,7 @@ class Element(Valid):
 
     `stackable`: several elements of the class can be evaluated as one, with arrays in its numeric fields.
     `acts_along_line`: the element acts along the line between its two points.
-    `unit_exponents`: by field, the exponents of mass and time in the field's unit; absent fields have neither.
+    `unit_exponents`: field names to the exponents of mass and time in the field's unit, which are 0 if absent.
     """
 
     stackable: ClassVar[bool] = True
@@ -74,12 +74,12 @@ class JointElement(Element):
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """Lengths of the joint [m] that count for the mechanism's length, like distances between points of a body."""
+        """Lengths of the joint [m] from which, among others, the mechanism's length is computed."""
         return ()
 
     @property
     def fallback_lengths(self) -> tuple[float, ...]:
-        """Lengths of the joint [m] for a mechanism in which the points of each body coincide."""
+        """Lengths of the joint [m] that are used if the points of each body coincide."""
         return ()
 
     def guides(self, places: tuple[Place, ...], span: float) -> bool:

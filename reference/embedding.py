@@ -1,7 +1,7 @@
 """Reference motions in minimal coordinates without joint forces, by the embedding method.
 
 The allowed velocities of all bodies are V = T(c) nu, with coordinates c, quasi-velocities nu, and c' = nu unless a
-scene defines other rates. Ideal joints do no work in the columns of T, so (Kane and Levinson, Dynamics; Neimark and
+scene defines other rates. Ideal joints do no work at these velocities. So (Kane and Levinson, Dynamics; Neimark and
 Fufaev)
 
 T^T M T nu' = T^T (f - M T' nu).
@@ -49,7 +49,7 @@ class EmbeddedScene(PlacedScene):
 
     @property
     def angle_unit(self) -> float:
-        """The unit of the coordinates in the tolerance of the integration [rad or m]."""
+        """The unit of the coordinates [rad or m]; the integration's tolerance is relative to it."""
         return 1.0
 
     def _split(self, state: Array) -> tuple[Array, Array]:
@@ -95,7 +95,7 @@ class EmbeddedScene(PlacedScene):
         return self._states(self.times(t))
 
     def _states(self, times: Array) -> tuple[Array, Array]:
-        if not times.any():  # only the start is requested, as for a mechanism
+        if not times.any():  # a mechanism needs only the start
             return self._split(np.tile(self.start, (len(times), 1)))
         return self._split(shared(type(self).solved, self, max(self.duration, float(times.max())))(times))
 

@@ -39,13 +39,11 @@ class ForceFacts(Element):
         return False
 
     def fastest_rate(self, places: tuple[Place, ...], bodies: Bodies, length: float) -> float:
-        """The rate [1/s] of the motion of the element's bodies by this force alone; `length` [m] is the mechanism's
-        length.
-        """
+        """The rate [1/s] of the bodies' motion under this force alone, in a mechanism of `length` [m]."""
         raise NotImplementedError
 
     def fallback_length(self, span: float, is_guided: bool) -> float:
-        """A length [m] for a mechanism in which the points of each body coincide.
+        """A length [m] that is used if the points of each body coincide.
 
         span: the distance [m] of the element's points at t = 0. is_guided: the force acts along a slot's line at all
         times.
@@ -95,7 +93,7 @@ class Spring(_ForceOfTwo):
         return extension if extension > ROUNDED_EXTENSION * span else 0.0
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
-        """Generalised force (..., 6); NaN if the points coincide and the rest length is not zero."""
+        """Generalised force (..., 6), or NaN if the points coincide and the rest length is not zero."""
         points = self.first_point, self.second_point
         vector, rows = apart(first, second, *points), point_rows(first, second, *points)
         rest = np.asarray(self.rest_length)
@@ -127,7 +125,7 @@ class Damper(_Dissipative):
         return self.damping * _inverse_mass(places, bodies)
 
     def on(self, first: AnyArray, second: AnyArray, first_twist: AnyArray, second_twist: AnyArray) -> AnyArray:
-        """Generalised force (..., 6); NaN if the points coincide, since the force then has no direction."""
+        """Generalised force (..., 6), or NaN if the points coincide, since the force then has no direction."""
         _, row = distance(first, second, self.first_point, self.second_point)
         rate = np.sum(row[..., :3] * first_twist + row[..., 3:] * second_twist, axis=-1)
         return -(np.asarray(self.damping) * rate)[..., None] * row
@@ -232,7 +230,7 @@ class Force(ForceFacts):
 
 @dataclass(frozen=True)
 class CoupledForce(OfTerms, ForceFacts):
-    """A tendon over several joints: the force along the sum of `terms` is force - stiffness (sum - rest) - damping
+    """A tendon over several joints: the force along the sum of `terms` is force - stiffness * (sum - rest) - damping *
     rate.
 
     `rate` is the rate of the sum. If the sum is a length, the units are N, N/m, N s/m and m; otherwise N m, N m/rad, N
@@ -267,7 +265,7 @@ class CoupledForce(OfTerms, ForceFacts):
         return max(math.sqrt(stiffness * inverse_mass), self.damping * inverse_mass)
 
     def total(self, poses: AnyArray, ends: Ends) -> AnyArray:
-        """The sum (...) of the terms at poses (..., bodies + 1, 3); `ends`: indices of each term's bodies."""
+        """The sum (...) of the terms at poses (..., bodies + 1, 3), with the indices `ends` of each term's bodies."""
         return sum(
             (term.value(poses[..., a, :], poses[..., b, :]) for term, (a, b) in zip(self.terms, ends, strict=True)),
             np.zeros(poses.shape[:-2]),

@@ -144,7 +144,7 @@ class Slot(_JointOfTwo):
         return ((self.second, self.second_point),)
 
     def guides(self, places: tuple[Place, ...], span: float) -> bool:
-        """Whether one point is the sliding point, and the other one is on the line in the first body."""
+        """Whether one place is the sliding point and the other place is on the line in the first body."""
         for (line_body, on_line), (sliding_body, sliding_point) in (places, places[::-1]):
             if (line_body, sliding_body) != (self.first, self.second):
                 continue
@@ -181,7 +181,7 @@ class Skate(_JointOfTwo):
     angle: float = 0.0
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """NaN (..., 1): the constraint is no function of the pose (18.65)."""
+        """NaN (..., 1), since the constraint is not a function of the pose (18.65)."""
         return np.full((*np.broadcast_shapes(first.shape[:-1], second.shape[:-1]), 1), np.nan)
 
     def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
@@ -247,7 +247,7 @@ class Gear(_JointOfTwo):
 
 @dataclass(frozen=True)
 class Weld(_JointOfTwo):
-    """A rigid connection: a point of each body coincides, and the second body has the angle `angle` [rad] to the first.
+    """A rigid connection at two points, with the angle `angle` [rad] of the second body relative to the first.
 
     The relative angle is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus
     that of the first, x then y, and omega of the second body minus omega of the first. Reaction: force [N] at the point

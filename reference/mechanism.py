@@ -35,8 +35,8 @@ from reference.validators import Floats, of_shape
 States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
 Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]
 
-# Maximum number of bytes of dense rows for which the rank is computed. This takes a minute, and eight minutes with
-# twice as many bodies.
+# Maximum number of bytes of dense rows for which the rank is computed. The rank takes a minute at this size, and eight
+# minutes with twice as many bodies.
 LARGEST_RANK = 2**28
 
 
@@ -45,7 +45,7 @@ class Mechanism(Valid):
     """Bodies, the joints between them, force elements, and gravity [m/s^2].
 
     Raises InvalidMechanism for a repeated or unknown name, a joint of a body with itself, or a start that does not
-    satisfy the joints: this error would be attributed to the engine.
+    satisfy the joints, whose error would be attributed to the engine.
     """
 
     bodies: tuple[Body, ...]
@@ -150,7 +150,7 @@ class Mechanism(Valid):
 
     @cached_readonly
     def rate(self) -> NDArray[np.float64]:
-        """The right-hand side of J v = rate (rows,), which is not zero only for drives."""
+        """The right-hand side of J v = rate (rows,), which is zero except for drives."""
         return np.array([value for joint in self.joints for value in joint.rate], dtype=float)
 
     @cached_readonly
@@ -164,7 +164,7 @@ class Mechanism(Valid):
 
     @validated
     def gap(self, pose: States, t: ArrayLike) -> NDArray[Any]:
-        """The position violation of every row (..., rows) [m or rad]; NaN in rows that constrain velocity only.
+        """The position violation of every row (..., rows) [m or rad], or NaN if the row constrains velocity only.
 
         pose (..., bodies, 3) and times t (...) [s].
         """
@@ -197,13 +197,14 @@ class Mechanism(Valid):
         gravity: Annotated[Numbers, of_shape(2)] | None = None,
         twist: Reals | None = None,
     ) -> NDArray[np.float64]:
-        """The joints' reactions (..., rows) [N, N m] for given accelerations: M a = f + J^T reaction.
+        """The joints' reactions (..., rows) [N, N m] from M a = f + J^T reaction with the force f of gravity and
+        forces.
 
-        pose, acceleration, and twist (which only dampers need): (..., bodies, 3). f is the force of gravity and of
-        force elements. By Newton's law an engine with this motion has applied these reactions. inertias (bodies, 3)
-        [kg, kg, kg m^2] and gravity (2,) [m/s^2]: those of an engine's own model, NaN if unknown; by default the
-        mechanism's. With them a wrong mass in the engine changes the reactions even if the motion is prescribed.
-        Reactions of dependent rows are not unique, and the minimum-norm ones are returned.
+        pose, acceleration and twist are (..., bodies, 3); only dampers need the twist. By Newton's law an engine with
+        this motion has applied these reactions. inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2] default
+        to the mechanism's. If they are the engine's, a wrong mass in the engine changes the reactions even if the
+        motion is prescribed. NaN stands for an unknown inertia. For dependent rows the minimum-norm reactions are
+        returned.
         """
         inertias = self.inertias if inertias is None else np.where(np.isnan(inertias), self.inertias, inertias)
         falling = self.free_fall if gravity is None else np.append(gravity, 0.0)
@@ -237,10 +238,10 @@ class Mechanism(Valid):
 
     @validated
     def degrees_of_freedom(self, pose: Annotated[Floats, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:
-        """(configuration, velocity) freedoms by the rank of the rows at a pose, by default the start (box 18.3).
+        """The numbers of configuration and velocity freedoms from the rank of the rows at a pose, by default the start.
 
-        A skate removes a freedom of velocity and none of configuration; a drive removes one of each. The cost is
-        O(bodies^3): raises InvalidMechanism if the rows take more than LARGEST_RANK.
+        A skate removes a freedom of velocity and none of configuration; a drive removes one of each (box 18.3). The
+        cost is O(bodies^3). Raises InvalidMechanism if the rows take more than LARGEST_RANK.
         """
         return self._freedoms_at_start if pose is None else self._freedoms(pose)
 
@@ -263,7 +264,7 @@ class Mechanism(Valid):
 
     @cached_readonly
     def pose_unit(self) -> NDArray[np.float64]:
-        """The unit of a body's pose, (3,) [m, m, rad]: the length scale twice, and 1."""
+        """The units (3,) [m, m, rad] of a pose are the length scale, the length scale and 1."""
         return np.array([self.length_scale, self.length_scale, 1.0])
 
     @cached_property
@@ -281,7 +282,7 @@ PLACEMENT_ROUNDINGS = 64
 
 
 def refuse_a_bad_start(mechanism: Mechanism) -> None:
-    """Raise InvalidMechanism, with the row, body or force, if no engine can begin with the start."""
+    """Raise InvalidMechanism, which names the row, body or force, if no engine can begin with the start."""
     with np.errstate(over="ignore"):
         energies = 0.5 * np.sum(mechanism.inertias * mechanism.twist**2, axis=-1)
     for body, energy in zip(mechanism.bodies, energies.tolist(), strict=True):
@@ -305,7 +306,7 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
 
 
 def open_joint(mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: float) -> str | None:
-    """A sentence about the row with the largest violation at the start; None if all violations are allowed.
+    """A sentence about the row with the largest violation at the start, or None if all violations are allowed.
 
     gap, slip (rows,); pose, twist (bodies, 3); size: length of the mechanism [m].
     """

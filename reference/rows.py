@@ -1,8 +1,8 @@
-"""Velocity rows J of a mechanism's joints: their evaluation, their rank, and the reactions along them.
+"""Evaluation and rank of a mechanism's velocity rows J, and the reactions along the rows.
 
-The size of a row depends on the unit of length, so ranks are computed for rows without units. J M^-1 J^T has the
-squared condition number of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without that
-product. For many rows the product is used, since it has a narrow band, and the solution is refined once.
+The size of a row depends on the unit of length, so ranks are computed for rows without units. The condition number of J
+M^-1 J^T is the square of that of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without that
+product. For many rows the product is used, since it has a narrow band; one step of refinement follows.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from reference.joints import Joint
 
 Array = NDArray[np.float64]
 
-# Singular values below this fraction of the largest one count as zero. The value is far above rounding and far below
-# the singular values of regular mechanisms.
+# Singular values below this fraction of the largest singular value count as zero. The value is far above rounding and
+# far below the singular values of regular mechanisms.
 RANK_TOLERANCE = 1e-9
 
 
 def rank(rows: Array, length: float) -> int:
-    """The number of independent rows (rows, 3 bodies), in any unit: angles are counted as arcs of `length` [m]."""
+    """The number of independent rows (rows, 3 bodies), with angles counted as arcs of `length` [m]."""
     return int(ranks(rows, np.asarray(length)))
 
 
 def ranks(rows: Array, length: Array) -> NDArray[np.int_]:
-    """The ranks (...) of rows (..., rows, 3 bodies), with lengths (...) [m]: see `rank`."""
+    """The ranks (...) of rows (..., rows, 3 bodies), with angles counted as arcs of `length` (...) [m]."""
     if rows.size == 0:
         return np.zeros(rows.shape[:-2], dtype=int)
     singular = np.linalg.svd(_unitless(rows, length), compute_uv=False)
@@ -63,9 +63,9 @@ def _unitless(rows: Array, length: float | Array) -> Array:
 
 
 def solve_symmetric(matrix: Array, right: Array) -> Array:
-    """x (rows,) with matrix x = right for a symmetric, positive semidefinite matrix of rows; the shortest if singular.
+    """The shortest x (rows,) with matrix x = right, for a symmetric, positive semidefinite matrix (rows, rows).
 
-    Scaled to a unit diagonal first, so that the threshold of dependence has no unit.
+    The matrix is scaled to a unit diagonal first, so that the threshold of singularity has no unit.
     """
     diagonal = np.diag(matrix)
     scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
@@ -77,12 +77,12 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
     """Forces (..., rows) with M excess = rows^T forces: least squares with the weights M^(-1/2).
 
     rows (..., rows, 3 bodies) at a pose; inertias (3 bodies,), the diagonal of M; excess (..., 3 bodies), acceleration
-    less that of free fall. If rows are dependent, the minimum-norm forces are returned; the unit of each row in that
-    norm is `size` (rows,) [N or N m]. NaN if a number is not finite.
+    minus free fall. If rows are dependent, the minimum-norm forces are returned, where `size` (rows,) [N or N m] is the
+    unit of each row. The result is NaN if a number is not finite.
 
-    The columns of M^(-1/2) rows^T are scaled to equal length, so that the rows of a light body have the same weight as
-    those of a heavy one. The dependence of rows is decided by their `rank`, with angles counted as arcs of `length`
-    [m], since a large ratio of masses can make independent rows look dependent.
+    The columns of M^(-1/2) rows^T are scaled to equal length, so that rows of light and heavy bodies have the same
+    weight. The dependence of rows is decided by their `rank`, with angles counted as arcs of `length` [m], since a
+    large ratio of masses can make independent rows look dependent.
     """
     root = np.sqrt(inertias)
     matrix = np.swapaxes(rows / root, -1, -2)
@@ -98,14 +98,15 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
     inverse = np.where(small, 0.0, 1 / np.where(small, 1.0, singular))
     target = np.where(finite[..., None], excess, 0.0) * root
     solution = scale * _times(np.swapaxes(right, -1, -2), inverse * _times(np.swapaxes(left, -1, -2), target))
-    missing = rows.shape[-2] - singular.shape[-1]  # more rows than coordinates: always dependent
+    missing = rows.shape[-2] - singular.shape[-1]  # if positive, rows are always dependent
     if missing > 0 or np.any(small & finite[..., None]):
         solution = _smallest(solution, scale, matrix, size)
     return np.where(finite[..., None], solution, np.nan)
 
 
 def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
-    """The minimum-norm forces: the solution without its component in the null space of rows^T, in units of `size`."""
+    """The solution without its component in the null space of rows^T, which has the smallest norm in units of
+    `size`."""
     _, singular, right = np.linalg.svd(matrix, full_matrices=True)
     count = matrix.shape[-1]
     padded = np.zeros((*singular.shape[:-1], count))
@@ -124,12 +125,12 @@ def _times(matrix: Any, vector: Any) -> Array:
 
 @dataclass(frozen=True)
 class JointGroup:
-    """Joints of one class, evaluated together, or one term of a coupling.
+    """Joints of one class that are evaluated together, or one term of a coupling.
 
     joint: each numeric field is an array with the joints along its first axis. first, second (joints,): indices of the
     bodies; the ground has the index after the last body. rows (joints, size): indices of the rows in the mechanism.
-    adds: the group is a second or later term of a coupling, whose row is a sum over groups. offset: subtracted from the
-    gap, for the first term of a coupling.
+    adds: the group is a second or later term of a coupling, whose row is a sum over groups. offset: constant of a
+    coupling that is subtracted from the gap of its first term.
     """
 
     joint: Any
@@ -152,7 +153,8 @@ class JointGroup:
 
 @dataclass(frozen=True)
 class JointRows:
-    """The rows of all joints between `bodies` bodies, `count` rows in the order of the joints."""
+    """The velocity rows of all joints in the order of the joints; `bodies` and `count` are the numbers of bodies and
+    rows."""
 
     groups: tuple[JointGroup, ...]
     bodies: int
@@ -160,7 +162,7 @@ class JointRows:
 
     @classmethod
     def of(cls, joints: Sequence[Joint], index: Mapping[str | None, int]) -> JointRows:
-        """From joints; `index` has the index of each body by name, and the last index, the ground's, under None."""
+        """From joints; `index` maps names of bodies to their indices, and None, the ground, to the last index."""
         by_class: dict[Any, list[tuple[Joint, range]]] = {}  # a joint that is not stackable has an entry of its own
         start, terms = 0, list[JointGroup]()
         for joint in joints:
@@ -220,7 +222,8 @@ class JointRows:
         return out[..., :-1, :].reshape((*leading, self.count, 3 * self.bodies))
 
     def velocities(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
-        """J v (..., rows) joint by joint, at the cost O(joints); dense J costs O(joints bodies)."""
+        """J v (..., rows) joint by joint, at the cost O(joints). The product with a dense J costs O(joints *
+        bodies)."""
         poses, twists = self.with_ground(pose), self.with_ground(twist)
         leading = np.broadcast_shapes(poses.shape[:-2], twists.shape[:-2])
         out = np.zeros((*leading, self.count), dtype=np.result_type(poses, twists, float))
@@ -242,17 +245,17 @@ def stacked(joints: Sequence[Any]) -> Any:
 
 # Number of rows from which the band solver is used; for fewer rows the dense solver is as fast.
 MANY_ROWS = 24
-# Squared pivots below this fraction of the largest show dependent rows: the same threshold as for ranks.
+# Rows are dependent if a squared pivot is below this fraction of the largest squared pivot, as for ranks.
 SMALLEST_PIVOT = 1e-9
 
 
 def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias: Array) -> Array:
-    """Reactions (times, rows) [N, N m] at poses (times, bodies, 3); NaN where rows are dependent.
+    """Reactions (times, rows) [N, N m] at poses (times, bodies, 3), or NaN at times with dependent rows.
 
-    `excess` (times, bodies, 3) are the accelerations without those of free fall, `inertias` (bodies, 3) the diagonal of
-    the mass matrix M. The equation is J M^-1 J^T reactions = J excess. The matrix is sparse; it is reordered to a
-    narrow band (reverse Cuthill-McKee) and factorised by Cholesky. The cost for a chain is O(bodies); that of the dense
-    system is O(bodies^3).
+    `excess` (times, bodies, 3) is the acceleration minus free fall. `inertias` (bodies, 3) is the diagonal of the mass
+    matrix M. The equation is J M^-1 J^T reactions = J excess. The matrix is sparse; it is reordered to a narrow band
+    (reverse Cuthill-McKee) and factorised by Cholesky. The cost for a chain is O(bodies), compared with O(bodies^3) for
+    the dense system.
     """
     everything, count = joint_rows.with_ground(pose), joint_rows.count
     blocks = [group.blocks(everything) for group in joint_rows.groups]  # (times, joints, size, 6) each

@@ -11,17 +11,17 @@ from reference.forces import ForceElement
 from reference.joints import Body, Joint
 from reference.plane import components
 
-# Distance of points on one body, relative to a radius of curvature, up to which it counts as a rounding error of a
-# contact at the centre of mass.
+# Largest distance of points on one body that counts as the rounding error of a contact at the centre of mass, relative
+# to a radius of curvature.
 ROUNDED = 1e-12
 
 
 def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequence[ForceElement] = ()) -> float:
-    """The largest length [m] of a rod, or distance between two points of one body at which an element acts.
+    """The mechanism's length [m]: the largest of the rods' lengths and the distances between points of one body.
 
-    The centre of mass is one of these points, and so is the point that defines a slot's line. A force along a slot's
-    line acts at the slot's points instead of its own. If the points of each body coincide, the result is the largest
-    length of a spring or radius of curvature of a rolling contact, or else 1.
+    The points are the centre of mass, the points at which joints and forces act, and the point that defines a slot's
+    line. For a force along a slot's line they are the slot's points. If the points of each body coincide, the result is
+    the largest length of a spring or radius of curvature of a rolling contact, or else 1.
     """
     by_name = {body.name: body for body in bodies}
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}
@@ -50,11 +50,11 @@ def time_scale(
     joints: Sequence[Joint],
     forces: Sequence[ForceElement] = (),
 ) -> float:
-    """The time of one radian of the fastest motion that a description shows [s]; 1 if nothing moves or pulls.
+    """The time of one radian of the mechanism's fastest motion [s], or 1 for a mechanism at rest without forces.
 
-    It is the inverse of the largest of: a body's rotation rate, a drive's rate, speed over length, the pendulum
-    frequency sqrt(g / length), and the rate of the motion that each force alone would cause: a spring's frequency, a
-    damper's rate of decay, and sqrt(a / length) for a constant acceleration a.
+    Motions are compared by these rates: a body's rotation rate, a drive's rate, speed over length, the pendulum
+    frequency sqrt(g / length), and the rate of the motion under each force alone. That is a spring's frequency, a
+    damper's rate of decay, or sqrt(a / length) for a constant acceleration a.
     """
     by_name = {body.name: body for body in bodies}
     rates = [math.sqrt(math.hypot(*gravity) / length)]
@@ -70,13 +70,13 @@ def time_scale(
 
 
 def _acting_points(force: ForceElement, joints: Sequence[Joint], bodies: Mapping[str, Body]) -> tuple[Place, ...]:
-    """The points at which a force acts, in all positions: those of a slot for a force along its line."""
+    """The points at which a force acts in all positions, which are the slot's points for a force along a slot."""
     guide = _guide(force, joints, bodies)
     return force.points if guide is None else guide.points
 
 
 def _guide(force: ForceElement, joints: Sequence[Joint], bodies: Mapping[str, Body]) -> Joint | None:
-    """The joint along whose line the force acts at all times; None if there is none."""
+    """The joint along whose line the force acts at all times, or None without such a joint."""
     if not force.acts_along_line:
         return None
     span = _span(force.points, bodies)
@@ -84,7 +84,7 @@ def _guide(force: ForceElement, joints: Sequence[Joint], bodies: Mapping[str, Bo
 
 
 def _span(places: tuple[Place, ...], bodies: Mapping[str, Body]) -> float:
-    """The distance of two points at t = 0 [m]; 0 for fewer."""
+    """The distance of two points at t = 0 [m], or 0 for fewer points."""
     return math.dist(*(_to_world(*place, bodies) for place in places)) if len(places) == 2 else 0.0
 
 
@@ -97,5 +97,5 @@ def _to_world(name: str | None, point: Vector, bodies: Mapping[str, Body]) -> Ve
 
 
 def diameter(points: Iterable[Vector]) -> float:
-    """The largest distance between two points [m]; 0 for one."""
+    """The largest distance between two points [m], or 0 for one point."""
     return max((math.dist(first, second) for first, second in combinations(points, 2)), default=0.0)

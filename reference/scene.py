@@ -1,4 +1,4 @@
-"""Scenes: the data of one experiment, which define a mechanism for engines and the reference motion."""
+"""Scenes, which define an experiment by a mechanism for engines and a reference motion."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ from reference.validators import INVALID, Floats, of_shape, validator_of
 # Approximate time between samples [s]. Every step of a sweep is a fraction of this time, so all steps have the same
 # sample times.
 SAMPLE_SPACING = 1e-2
-Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # NaN after the end of an engine's run.
-# The annotations of a scene's times.
+Poses = Annotated[Numbers, of_shape("...", "bodies", 3)]  # Poses are NaN after the end of an engine's run.
+# Names of a scene's times and their annotations.
 TIME_ANNOTATIONS = (("duration", Positive), ("horizon", Positive), ("samples", Count))
 
 
@@ -45,7 +45,7 @@ Result = TypeVar("Result")
 
 
 def shared(function: Callable[..., Result], *arguments: Any) -> Result:
-    """function(*arguments), cached for equal arguments, so that equal scenes share their integrated motion."""
+    """The result of function(*arguments); it is cached, so that equal scenes share their integrated motion."""
     return _shared(function, *arguments)
 
 
@@ -55,7 +55,7 @@ def _shared(function: Callable[..., Any], *arguments: Any) -> Any:
 
 
 class NoMotion(InvalidMechanism):
-    """Each number of a scene is valid, but no finite motion can be computed from them."""
+    """No finite motion can be computed for a scene, although each of its numbers is valid."""
 
 
 class Scene(Valid, ABC):
@@ -81,7 +81,7 @@ class Scene(Valid, ABC):
         super().__post_init__()
         field_names = {field.name for field in fields(self)}  # type: ignore[arg-type]
         for name, annotation in TIME_ANNOTATIONS:
-            # A class attribute that is no field; a property is not evaluated here.
+            # This checks a class attribute that is no field; a property is not evaluated.
             value = inspect.getattr_static(self, name)
             if name not in field_names and not hasattr(value, "__get__"):
                 validate(self._owner(), name, value, annotation)
@@ -98,8 +98,8 @@ class Scene(Valid, ABC):
     def motion(self, t: ArrayLike) -> Trajectory:
         """The reference motion at times t (times,) or one time [s]: poses, twists, reactions.
 
-        Raises InvalidMechanism unless all times are finite, between 0 and `max_time`, and before the motion's end;
-        NoMotion if the motion can't be computed or is not finite.
+        Raises InvalidMechanism unless all times are finite, between 0 and `max_time`, and before the motion's end.
+        Raises NoMotion for a motion that can't be computed or is not finite.
         """
         times = self.times(t)
         until = f"no motion is known up to {times.max(initial=0.0):.9g} s"
@@ -112,7 +112,7 @@ class Scene(Valid, ABC):
 
     @abstractmethod
     def _motion(self, times: Floats) -> Trajectory:
-        """The reference motion at times (times,) [s], at least one, that `motion` has checked."""
+        """The reference motion at one or more checked times (times,) [s]."""
 
     def _refuse_not_finite(self, motion: Trajectory) -> None:
         """Raise OverflowError for numbers that are not finite; unknown reactions are NaN.
@@ -129,7 +129,7 @@ class Scene(Valid, ABC):
                 raise OverflowError(f"its {name} are not finite numbers at {motion.t[np.argmin(at_instants)]:.6g} s")
 
     def times(self, t: ArrayLike) -> Floats:
-        """Times or one time [s] as an array (times,); InvalidMechanism unless finite and between 0 and `max_time`."""
+        """Return times [s] as an array (times,); raise InvalidMechanism unless all are between 0 and `max_time`."""
         times = sample_times(self._owner(), t)
         if times.size and times.max() > self.max_time:
             raise InvalidMechanism(
@@ -166,12 +166,12 @@ class Scene(Valid, ABC):
 
     @property
     def comparable_until(self) -> float:
-        """The time [s] until which real bodies can follow the ideal motion; later comparisons are not valid."""
+        """The time [s] until which real bodies can follow the ideal motion."""
         return math.inf
 
     @property
     def samples(self) -> int:
-        """Sampling intervals over the duration."""
+        """The number of sampling intervals in the duration."""
         return max(1, round(self.duration / SAMPLE_SPACING))
 
     @property
@@ -201,7 +201,7 @@ class PlacedScene(Scene):
 
 @contextmanager
 def _named(owner: str, trouble: str) -> Iterator[None]:
-    """Raise NoMotion for failed arithmetic in the context, and begin every message with the owner's name."""
+    """Raise NoMotion for failed arithmetic in the context; every message begins with `owner`."""
     try:
         yield
     except InvalidMechanism as reason:
@@ -224,7 +224,7 @@ def _raising_no_motion(mechanism: Callable[[Any], Mechanism]) -> Callable[[Any],
 
 
 def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
-    """The scene with fields set by name, each value a text as it is typed: 0.5, (0, -9.81), True.
+    """The scene with fields set by name from text, such as "0.5", "(0, -9.81)" or "True".
 
     Returns the scene itself if no value changes. Raises InvalidMechanism for a name that is no field (with the nearest
     one), for a value that is not valid for the field, and for numbers from which no mechanism can be made.
@@ -254,7 +254,7 @@ def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
 
 
 def with_distinct_names(scenes: tuple[Scene, ...]) -> tuple[Scene, ...]:
-    """The scenes; scenes with equal names get names with the numbers that differ from the defaults."""
+    """The scenes, in which equal names are extended by the numbers that differ from the defaults."""
     names = [scene.name for scene in scenes]
     return tuple(
         named(_replaced(scene, {}), _name(scene.name, _changed_fields(scene)))

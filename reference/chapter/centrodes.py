@@ -23,8 +23,8 @@ from reference.rolling.traced import FEWEST, STILL, Traced, spline
 from reference.trajectory import Trajectory
 from reference.validators import NOT_FINITE, from_to, of_shape
 
-# The slowest rotation rate, relative to the fastest, at which the instant centre counts as finite: its distance is then
-# a million times the size of the motion.
+# Smallest rotation rate, relative to the largest, at which the instant centre counts as finite. Its distance is then a
+# million times the size of the motion.
 SLOWEST = 1e-6
 
 Poses = Annotated[Array, of_shape("n", 3)]
@@ -59,7 +59,7 @@ def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array
 
 @dataclass(frozen=True, eq=False)
 class Centrodes(Valid):
-    """Both curves of a motion, sampled in the order of increasing rotation; made by `centrodes` or `from_poses`.
+    """The body curve and the space curve of a motion, sampled in the order of increasing rotation.
 
     pose (n, 3) [m, m, rad]; space (n, 2) [m]: the instant centre in the world; body (n, 2) [m]: the instant centre in
     the body's frame; error [m]: the change of the curves if every second sample is left out, a bound on the error of
@@ -112,7 +112,7 @@ class Centrodes(Valid):
         return self.space_curve.speed_of(self.theta)
 
     def rolling(self) -> Rolling:
-        """The body curve rolling on the space curve, which reproduces the motion; it starts in the middle.
+        """The body curve rolling on the space curve, which reproduces the motion; the start is the middle sample.
 
         Its `limits` are the ends of the table, up to the error of the tangents there, about `error` per step.
         """
@@ -126,10 +126,10 @@ class Centrodes(Valid):
 
 @validated
 def centrodes(t: Annotated[Array, of_shape("n")], pose: Poses, twist: Poses) -> Centrodes:
-    """Both curves from times (n,) [s], poses and twists (n, 3) of one body.
+    """The centrodes of a body with poses and twists (n, 3) at times (n,) [s].
 
-    Raises InvalidMechanism if the rotation rate vanishes or changes its sign (the centre is at infinity; cut the motion
-    there), if the body does not rotate, for fewer than 16 samples, times that don't grow, or numbers not finite.
+    Raises InvalidMechanism for fewer than 16 samples, times that don't increase, numbers that are not finite, and a
+    rotation rate that vanishes or changes its sign (the centre is then at infinity; cut the motion there).
     """
     t, pose = _checked(t, pose)
     if twist.shape != pose.shape:
@@ -156,7 +156,7 @@ def centrodes(t: Annotated[Array, of_shape("n")], pose: Poses, twist: Poses) -> 
 
 @validated
 def from_poses(t: Annotated[Array, of_shape("n")], pose: Poses) -> Centrodes:
-    """Both curves from poses (n, 3) at times (n,) [s], with twists by a spline of degree 7.
+    """The centrodes of a body with poses (n, 3) at times (n,) [s]; the twists are derivatives of a spline of degree 7.
 
     Angles may be wrapped if neighbours differ by less than half a turn. Raises the errors of `centrodes`. The curves
     depend on the order of the poses, but not on the speed of the motion.
@@ -168,7 +168,7 @@ def from_poses(t: Annotated[Array, of_shape("n")], pose: Poses) -> Centrodes:
     half = spline(t[::2], pose[::2])
     space, _ = instant_centre(half(t), half.derivative()(t))
     order = slice(None) if pose[-1, 2] > pose[0, 2] else slice(None, None, -1)
-    # Without the ends, where every second sample would be extrapolated.
+    # The spline through every second sample would be extrapolated at the end of an even number of samples.
     inner = slice(0, len(t) - 1 + len(t) % 2)
     moved = np.linalg.norm(space[inner] - full.space[order][inner], axis=-1)
     return Centrodes(full.pose, full.space, full.body, max(full.error, float(np.max(moved))))
@@ -208,7 +208,7 @@ def _assembled(pose: Array, space: Array, body: Array) -> Centrodes:
 
 
 def _halved(theta: Array, points: NDArray[np.float64]) -> float:
-    """The largest distance [m] of the other points from the curve through every second one; NaN for few points."""
+    """The largest distance [m] of points from the curve without every second point, or NaN for few points."""
     if len(theta) < 2 * FEWEST:
         return math.nan
     last = len(theta) - 1 + len(theta) % 2
@@ -283,7 +283,7 @@ def as_csv(shapes: Shapes) -> str:
 
 @validated
 def as_svg(shapes: Shapes, width: Positive = 200.0) -> str:
-    """SVG with both curves at one scale, `width` [mm] wide; the moving part in the pose of the first contact."""
+    """SVG of both curves, `width` [mm] wide, with the moving part in the pose of the first contact."""
     moved = placed_body(shapes, 0)
     corners = np.vstack([shapes.space, moved])
     low, size = corners.min(axis=0), np.ptp(corners, axis=0)

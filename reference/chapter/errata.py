@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Values:
-    """Three results (n,): of the printed formula, of the corrected one, and of the computation that decides."""
+    """The results (n,) of the printed formula, of the corrected formula, and of the computation that decides."""
 
     printed: Array
     right: Array
@@ -38,7 +38,7 @@ class Values:
 
     @property
     def agreement(self) -> float:
-        """The largest error of the corrected formula: rounding."""
+        """The largest error of the corrected formula, which is rounding."""
         return float(np.abs(self.right - self.decides).max())
 
 
@@ -57,7 +57,7 @@ def rates(theta: float, beta: float, phi: float) -> tuple[float, float]:
 
 @validated
 def closed_form(theta: float) -> tuple[float, float]:
-    """beta and phi [rad]: C is the left one of the two intersections of the circles about B and D."""
+    """beta and phi [rad], with C at the left intersection of the circles about B and D."""
     l1, l2, l3, l4 = BAR_LENGTHS
     bx, by = l1 * math.cos(theta), l1 * math.sin(theta)
     dx, dy = l4 - bx, -by
@@ -93,10 +93,10 @@ def acceleration_of_g(
 
 
 def rolling_acceleration() -> Values:
-    """The acceleration of O' as printed, which is correct with the chapter's direction of e_n, and with -e_n.
+    """The acceleration of O' with the term in e_n subtracted, with the term added, and as the derivative of the path.
 
-    A circle of radius b rolls on the outside of a fixed one of radius a; it has turned by theta(t), and the contact is
-    at the angle psi = theta b / (a + b) of the fixed circle.
+    A circle of radius b rolls on the outside of a fixed circle of radius a. After a rotation theta(t) the contact is at
+    the angle psi = theta b / (a + b) of the fixed circle.
     """
     fixed, rolling, theta, omega, alpha = 0.8, 0.5, 0.7, 1.7, -0.6  # radii a, b [m]; rad, rad/s, rad/s^2
 
@@ -138,22 +138,22 @@ def right(bar: BarState) -> Array:
 
 
 def omega_in_the_first_term(bar: BarState) -> Array:
-    """omega x r + omega x (omega x r), as printed: a velocity added to an acceleration."""
+    """omega x r + omega x (omega x r), as printed; the first term is a velocity."""
     return right(BarState(bar.length, bar.angle, bar.rate, bar.rate))
 
 
 def dot_missing_in_i(bar: BarState) -> Array:
-    """The i component is wrong: phi2dot for phi2ddot."""
+    """The i component has phi2dot in place of phi2ddot."""
     return np.array([omega_in_the_first_term(bar)[0], right(bar)[1]])
 
 
 def exchanged_in_j(bar: BarState) -> Array:
-    """The j component is wrong: sine and cosine exchanged."""
+    """In the j component sine and cosine are exchanged."""
     second = bar.rate**2 * math.sin(bar.angle) + bar.angular_acceleration * math.cos(bar.angle)
     return np.array([right(bar)[0], bar.length * second])
 
 
-# For each error of the chapter, the bar (0: OA, 1: AB) and the wrong formula of its acceleration.
+# Number of the erratum to the bar (0 is OA, 1 is AB) and the wrong formula of its acceleration.
 PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
     23: (0, omega_in_the_first_term),
     25: (1, omega_in_the_first_term),

@@ -1,10 +1,10 @@
-"""Integrability of velocity rows: Frobenius' theorem for their one-forms, computed for any mechanism.
+"""Integrability of a mechanism's velocity rows by Frobenius' theorem.
 
 The rows J(q) dq - rate dt are one-forms w_i in q and t; the motions they allow are the null space D of the rows. By
-Frobenius' theorem the rows are integrable if and only if dw_i(X, Y) = 0 for all X, Y in D, that is, if the brackets of
-allowed motions are allowed. Exactness, dw = 0, is sufficient but not necessary. So the argument of box 18.3, that no F
-exists, is no proof: a row may be integrable after division by a factor, or only together with the other rows. If
-brackets are not in D, they are added to it until the dimension no longer grows. That dimension is the number of
+Frobenius' theorem the rows are integrable if and only if dw_i(X, Y) = 0 for all X, Y in D, that is, if brackets of
+allowed motions are allowed motions. Exactness, dw = 0, is sufficient but not necessary. So the argument of box 18.3,
+that no F exists, proves nothing: a row may be integrable after division by a factor, or together with other rows.
+Brackets that are not in D are added to D until the dimension no longer grows. That dimension is the number of
 configuration freedoms (Chow's theorem); dim D is the number of velocity freedoms.
 """
 
@@ -34,7 +34,7 @@ Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., row
 CIRCLE_RADIUS = 0.03
 CIRCLE_SAMPLES = 8
 GROWTH_TOLERANCE = 1e-6
-# A rank must be constant in a neighbourhood: it is computed at the pose and at NEIGHBOURS - 1 others this far from it.
+# Ranks are compared at the pose and at NEIGHBOURS - 1 poses at this distance from it, since they must be constant.
 NEIGHBOUR_DISTANCE = 0.1
 NEIGHBOURS = 4
 
@@ -71,7 +71,7 @@ def _neighbours(place: Place) -> list[Array]:
 
 @validated
 def is_integrable(rows: Rows, place: Place) -> bool:
-    """Whether the obstruction vanishes at a place and near it. Raises InvalidMechanism if the rank changes there."""
+    """Whether dw_i(X_a, X_b) is zero at a place and near it. Raises InvalidMechanism if the rank changes there."""
     places = _neighbours(place)
     ranks = {null_space(rows(near)).shape[1] for near in places}
     if len(ranks) > 1:
@@ -82,7 +82,7 @@ def is_integrable(rows: Rows, place: Place) -> bool:
 
 
 def _along(field: Rows, place: NDArray[Any], direction: NDArray[Any]) -> NDArray[Any]:
-    """The derivative of an analytic field along a direction, both at places (..., coordinates)."""
+    """The derivative of an analytic field at places (..., coordinates) along directions (..., coordinates)."""
     turns = np.exp(2j * np.pi * np.arange(CIRCLE_SAMPLES) / CIRCLE_SAMPLES)
     circle = place[..., None, :] + CIRCLE_RADIUS * turns[:, None] * direction[..., None, :]
     return np.einsum("...pi,p->...i", field(circle), 1 / turns) / (CIRCLE_SAMPLES * CIRCLE_RADIUS)
@@ -93,7 +93,7 @@ def _bracket(first: Rows, second: Rows) -> Rows:
 
 
 def _fields(rows: Rows, place: Place) -> list[Rows]:
-    """Analytic fields that span the allowed motions near a place: projections of the null space at that place."""
+    """Analytic fields that span the allowed motions near a place, by projection of the null space at the place."""
     at_place = rows(place)
     _, upper, pivot = qr(at_place.T, mode="economic", pivoting=True)  # pyright: ignore[reportAssignmentType]
     diagonal = np.abs(np.diag(upper))
@@ -116,9 +116,9 @@ def _fields(rows: Rows, place: Place) -> list[Rows]:
 def growth(rows: Rows, place: Place) -> tuple[int, ...]:
     """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]], ... at a place, until nothing is added.
 
-    The first is the number of velocity freedoms, the last that of configuration freedoms: (1,) for a pinned body,
+    The first number counts velocity freedoms, the last number configuration freedoms: (1,) for a pinned body,
     (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular: if a bracket vanishes at
-    this place only (a trailer at a right angle to its car), brackets with it are left out.
+    this place only (a trailer at a right angle to its car), its further brackets are not counted.
     """
     generators = _fields(rows, np.asarray(place, dtype=float))
     basis = _extended_basis(np.zeros((len(place), 0)), [np.real(field(place)) for field in generators])
@@ -176,17 +176,17 @@ def mechanism_place(mechanism: Mechanism, pose: Pose | None = None) -> Array:
 
 @validated
 def mechanism_is_integrable(mechanism: Mechanism, pose: Pose | None = None) -> bool:
-    """Whether all rows together are derivatives of positions (and time), near a pose, by default the start."""
+    """Whether all rows together are integrable near a pose, by default the start."""
     return is_integrable(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
 
 
 @validated
 def freedoms_by_brackets(mechanism: Mechanism, pose: Pose | None = None) -> tuple[int, ...]:
-    """The growth of a mechanism's freedoms without time: the first number is of velocity, the last of configuration.
+    """The `growth` of a mechanism's freedoms, time not counted: from velocity freedoms to configuration freedoms.
 
-    This is a check of `Mechanism.degrees_of_freedom`, since it does not use `holonomic`. With one freedom of velocity
-    there are no brackets: a car with locked steering follows one curve, so its skates are integrable together, although
-    `degrees_of_freedom` counts four freedoms of configuration by the classes of its joints.
+    This is a check of `Mechanism.degrees_of_freedom`, since it does not use `holonomic`. A car with locked steering has
+    one freedom of velocity and follows one curve, so its skates are integrable together. `degrees_of_freedom` counts
+    four freedoms of configuration for it, by the classes of its joints.
     """
     dimensions = growth(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
     return tuple(dimension - 1 for dimension in dimensions)

@@ -3,8 +3,8 @@
 A linear condition on the velocity of one body that is the same at every position and direction has constant factors in
 the body's own axes: a u + b v + c theta' = 0, with the velocity u, v [m/s] of the centre of mass along them. With
 (a, b) = 0 it is theta' = 0, which is integrable. Otherwise it is a skate: divided by |(a, b)|, it is the velocity of a
-point P across a blade with the left normal n = (a, b) / |(a, b)|; the points P are those of the line
-n . (k x P) = c / |(a, b)|. Then w . curl w = -(a^2 + b^2) < 0, so it is not integrable.
+point P along the blade's left normal n = (a, b) / |(a, b)|. Every point P with dot(n, k x P) = c / |(a, b)| has this
+velocity. Then w . curl w = -(a^2 + b^2) < 0, so it is not integrable.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ BodyRow = tuple[float, float, float]  # (a, b, c) [1, 1, m]
 
 @validated
 def skate_of(row: BodyRow, body: str = "body") -> Skate | None:
-    """The skate with the row (a, b, c) in the body's axes; None for a row that constrains only rotation (a = b = 0).
+    """The skate with the row (a, b, c) in the body's axes, or None for a row that constrains only rotation (a = b = 0).
 
     Raises InvalidMechanism for a row of zeros.
     """
@@ -62,11 +62,12 @@ def frobenius(row: BodyRow, place: Place) -> float:
 
 @validated
 def coriolis_factors(speed: float, rate: float, angular_acceleration: float = 0.0) -> tuple[float, float]:
-    """The factor of v theta' in the acceleration across v: (for a skate's point, for a slider).
+    """The factors of v theta' in the acceleration across v, for a skate's point and for a slider.
 
-    speed v [m/s], rate theta' [rad/s], neither zero. The skate's point moves at v along i' of its own body, and only i'
-    rotates. A slider at the same position moves at v along i' of a rotating body: both i' and the arm rotate, and the
-    arm grows. Both factors are numerical derivatives of a velocity or a position, so that no formula is assumed.
+    The speed v [m/s] and the rate theta' [rad/s] are not zero. The skate's point moves at v along i' of its own body,
+    and only i' rotates. A slider at the same position moves at v along i' of a rotating body: both i' and the arm
+    rotate, and the arm grows. Both factors are numerical derivatives of a velocity or a position, so that no formula is
+    assumed.
     """
     if speed == 0 or rate == 0:
         raise InvalidMechanism(f"coriolis_factors: speed is {speed}, rate is {rate}; neither may be zero")
@@ -75,8 +76,8 @@ def coriolis_factors(speed: float, rate: float, angular_acceleration: float = 0.
         angle = rate * t + angular_acceleration * t * t / 2
         return np.stack([np.cos(angle), np.sin(angle)])
 
-    # At t = 0 the body's axis i' is the world's x axis, so the component across is y. In `near` [s] the angles are
-    # small.
+    # At t = 0 the body's axis i' is the world's x axis, so the component across is y. Angles are small up to the time
+    # `near` [s].
     near = 0.25 / max(abs(rate), math.sqrt(abs(angular_acceleration)))
     skate = derivative(lambda t: speed * along(t), 0.0, radius=near)
     slider = derivative(lambda t: speed * t * along(t), 0.0, order=2, radius=near)

@@ -1,6 +1,7 @@
 """The integral of a function of time, accurate to rounding, and the derivative of an analytic function.
 
-Integrals use adaptive panels with Chebyshev series, derivatives Cauchy's integral over a circle in the complex plane.
+Integrals are sums over adaptive panels with Chebyshev series. Derivatives are Cauchy integrals over a circle in the
+complex plane.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# Number of points of a panel, which resolve about one radian to rounding.
+# Number of points of a panel; they resolve an oscillation over about one radian to rounding.
 PANEL_POINTS = 24
-# Number of the last coefficients of a series that must be zero to rounding; otherwise the panel is halved.
+# The panel is halved unless this number of last coefficients of its series are zero to rounding.
 TAIL = 4
 # Halvings of a panel around a jump of the integrand, after which the panel is shorter than rounding.
 MOST_HALVINGS = 46
@@ -37,15 +38,15 @@ def _series_at(series: NDArray[Any], place: NDArray[np.float64]) -> NDArray[Any]
     return series[:, 0] + place * later - latest
 
 
-# limits the points to 40 MB; scenes of this suite have at most a few hundred panels
+# This limits the points to 40 MB; scenes of this suite have at most a few hundred panels.
 MOST_PANELS = 100_000
 
 
 class Antiderivative:
-    """int_0^t f, for a real or complex f of an array of times; panels are added when a later time is needed.
+    """The integral of f from 0 to t, for a real or complex f; panels are added when a later time is needed.
 
-    `panel` [s] is the length of the longest panel. It must be about the shortest time scale of f, so that the points
-    resolve f.
+    `panel` [s] is the length of the longest panel. Choose about the shortest time scale of f, so that the points of a
+    panel resolve f.
     """
 
     def __init__(self, function: Callable[[NDArray[np.float64]], NDArray[Any]], panel: float) -> None:

@@ -1,11 +1,10 @@
-"""Motions q'' = f(q, q') of a few angles by Gauss-Legendre collocation, all nodes of a step at once.
+"""Motions q'' = f(q, q') of a few angles by Gauss-Legendre collocation.
 
-A step, here called a window, has 24 stages, so that their polynomial represents the acceleration to rounding. The
-polynomial gives the motion at every time within the window, and there is no discretisation error to be estimated. The
-collocation equations are solved by fixed-point (Picard) iteration: rates follow from accelerations, angles from rates,
-new accelerations from both. An iteration is one call of f with all nodes, which for a few angles costs little more than
-a call with one state. The method is seven times as fast as an explicit method of order 8 at the same tolerance,
-measured with a fast and a slow oscillation.
+A step, here called a window, has 24 stages; the polynomial through them represents the acceleration to rounding. It
+gives the motion at every time within the window without a discretisation error. The collocation equations are solved by
+fixed-point (Picard) iteration. An iteration calls f once with all nodes, at little more cost than a call with one
+state. For a fast and a slow oscillation, the method is seven times as fast as an explicit method of order 8 at the same
+tolerance.
 
 States are in extended precision if numpy.longdouble has more digits than a double. With a fast oscillation, the
 rounding error of an angle times the square of the frequency is an error of the acceleration; in double precision it
@@ -32,32 +31,32 @@ Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..
 
 # Number of stages of a window.
 STAGES = 24
-# Number of stages of the coarser rule; the difference of both rules is the error estimate.
+# Number of stages of the coarser rule for the error estimate.
 COARSE_STAGES = 16
-# Allowed error of the polynomial within a window, ten times the rounding of a double. The order at the window's end is
-# twice as high, so the error there is far below rounding.
+# Allowed error of the polynomial within a window, ten times the rounding of a double. At the window's end the order is
+# twice as high and the error far below rounding.
 WINDOW_TOLERANCE = 3e-15
-# The first window in units of the start's time scale [rad], which is small for any motion.
+# Length of the first window times the start's rate [rad], which is small for any motion.
 FIRST_WINDOW = 0.3
-# Numbers of iterations: up to the first the next window is longer, above the second shorter, and at the third the
-# window is repeated with half its length.
+# The next window is longer after at most FEW_ITERATIONS and shorter after more than MANY_ITERATIONS. After
+# MOST_ITERATIONS the window is repeated with half its length.
 FEW_ITERATIONS, MANY_ITERATIONS, MOST_ITERATIONS = 9, 12, 30
-# Factors on the length of the next window in these three cases.
+# Factors on the length of a window: longer, shorter, and repeated.
 LONGER, SHORTER, HALVED = 1.2, 1 / 1.15, 0.5
-# Number of Legendre coefficients of a window from which the first guess of the next window is extrapolated.
+# Number of Legendre coefficients that are extrapolated to the next window as its first guess.
 GUESS_COEFFICIENTS = 8
 # Maximum number of windows; a motion that needs more approaches a singularity.
 MOST_WINDOWS = 20_000
-# Windows after which `motion` changes to the explicit method: with a fast oscillation, accelerations in double
-# precision allow only short windows. The attempt costs a tenth of a second.
+# Number of windows after which `motion` changes to the explicit method. Accelerations in double precision allow only
+# short windows for a fast oscillation. The attempt costs a tenth of a second.
 FEW_WINDOWS = 200
 
 
 class CollocationRule(NamedTuple):
     """Gauss's rule on a step of length 1.
 
-    weights (stages,); matrix (stages, stages) from slopes to increments at the stages; coefficients (stages, stages)
-    from slopes to their Legendre coefficients.
+    weights (stages,); matrix (stages, stages) times slopes: increments at the stages; coefficients (stages, stages)
+    times slopes: Legendre coefficients.
     """
 
     weights: Extended
@@ -75,7 +74,7 @@ def legendre(degree: int, x: Extended) -> Extended:
 
 @lru_cache
 def rule_of(stages: int) -> CollocationRule:
-    """The rule with this number of stages, to the rounding of numpy.longdouble."""
+    """Gauss's rule with this number of stages, accurate to the rounding of numpy.longdouble."""
     nodes = np.polynomial.legendre.leggauss(stages)[0].astype(np.longdouble)
     for _ in range(3):  # Newton iterations, since numpy's nodes are doubles
         values = legendre(stages, nodes)
@@ -138,10 +137,12 @@ def integrate(
     tolerance: float = WINDOW_TOLERANCE,
     most: int = MOST_WINDOWS,
 ) -> CollocationMotion:
-    """Integrate from angles and rates (n,) at t = 0 to `until` [s]; `rate_unit` [rad/s] is the motion's own rate.
+    """Integrate from angles and rates (n,) at t = 0 to `until` [s]; `rate_unit` [rad/s] is the unit of rates in the
+    tolerance.
 
-    A window is accepted if its last Legendre coefficient and its last iteration change the rates by less than
-    `tolerance`, relative to the largest rate. Raises IntegrationFailed if windows vanish or exceed `most`.
+    A window is accepted if its last Legendre coefficient and its last iteration change the rates by at most `tolerance`
+    times the sum of `rate_unit` and the largest rate. Raises IntegrationFailed for more than `most` windows, or a
+    window of length zero.
     """
     rule = rule_of(stages)
     position, speed = (np.asarray(state, dtype=np.longdouble) for state in (angle, rate))
@@ -189,11 +190,11 @@ Motion = CollocationMotion | integration.Integrated
 
 
 def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarser: float = 1.0) -> Motion:
-    """The motion up to `until` [s] of angles and their rates (2 n,), whose `rates` are computed in double precision.
+    """The motion up to `until` [s] from a start of n angles and n rates, with `rates` in double precision.
 
     Returns a function from times (times,) to states (times, 2 n). The method is collocation, or the explicit method of
-    `integration` if collocation needs many windows. unit (2 n,): see `integration.integrate`. If `coarser` is not 1, it
-    is a factor on the tolerance, and the rule has COARSE_STAGES. Raises IntegrationFailed.
+    `integration` if collocation needs many windows. unit (2 n,): see `integration.integrate`. `coarser` is a factor on
+    the tolerance; a value other than 1 also selects the rule with COARSE_STAGES. Raises IntegrationFailed.
     """
     state = np.asarray(start, dtype=float)
     half = len(state) // 2
@@ -212,14 +213,15 @@ def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarse
 
 
 def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> Array:
-    """A bound (times,) on the error of `motion`: COARSER times its change by a coarser rule, and rounding."""
+    """A bound (times,) on the error of `motion`: COARSER times the difference to a coarser rule, plus rounding."""
     times = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(times.max()), math.ulp(1.0))
     return bound(*(motion(rates, start, until, unit, factor)(times) for factor in (1.0, COARSER)))
 
 
 def bound(fine: NDArray[Any], coarse: NDArray[Any]) -> Array:
-    """A bound (times,), at least rounding, on the error of states (times, n) from the states by a coarser rule."""
+    """A bound (times,) on the error of states (times, n): COARSER times the difference to a coarser rule, plus
+    rounding."""
     return (COARSER * (np.abs(fine - coarse) + np.finfo(float).eps * np.abs(fine))).max(axis=-1).astype(float)
 
 
@@ -233,7 +235,8 @@ def _solve_window(
     unit: float,
     tolerance: float,
 ) -> tuple[Extended | None, int]:
-    """The accelerations at the nodes of a window (stages, n), None if it is too long, and the number of iterations."""
+    """The accelerations at the nodes (stages, n), or None for a window that is too long, and the number of
+    iterations."""
     straight = angle + length * rule.matrix.sum(axis=1)[:, None] * rate
     nodal, smallest = guess, math.inf
     for iteration in range(1, MOST_ITERATIONS + 1):
@@ -262,7 +265,7 @@ def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
 
 
 def _integrated(values: Extended) -> Extended:
-    """The integrals (n, times) of all but the last of polynomials (n + 1, times) of degrees 0 to n, or their integrals.
+    """The integrals (n, times) of Legendre polynomials or their integrals (n + 1, times); the last degree is left out.
 
     On a step of length 1 the integral of P_n is (P_(n+1) - P_(n-1)) / (4 n + 2), and that of P_0 is (P_1 + P_0) / 2.
     """

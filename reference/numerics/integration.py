@@ -1,8 +1,8 @@
 """Integration of motions without a closed form, at tight tolerance, with dense output of full order and a known error.
 
 The method is the explicit Runge-Kutta pair of order 8 by Dormand and Prince (Hairer, Norsett, Wanner, Solving Ordinary
-Differential Equations I, II.10). Its usual interpolant has order 7 only. Here the state at a time between two steps is
-the result of one more step of order 8, from the step before it; this is done for all times at once.
+Differential Equations I, II.10). Its usual interpolant has order 7 only. Here one more step of order 8 gives the state
+at a time between two steps; all times are computed at once.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
 
 # Relative error of a step, about the smallest one that double precision allows.
 STEP_TOLERANCE = 3e-14
-# Factor on the tolerance of the second integration, whose difference to the first is the error estimate.
+# Factor on the tolerance of a second integration; the error estimate is the difference of the two motions.
 COARSER = 10.0
-# A motion that needs more steps approaches a singularity.
+# Maximum number of steps; a motion that needs more approaches a singularity.
 MAX_STEPS = 20_000
-# The first step, relative to the time in which the start state changes by itself and its unit. The value is small for
-# any motion, since a step may grow tenfold. SciPy's choice would depend on the unit of time.
+# The first step, relative to the time in which the state changes by its value plus its unit. The value is small for any
+# motion, since a step may grow tenfold. SciPy's first step would depend on the unit of time.
 FIRST_STEP = 1e-3
 # Number of steps after which the integration checks whether it can end. It stops if even steps LENGTHENED times as long
 # would need more than the maximum number of steps.
@@ -37,11 +37,11 @@ LENGTHENED = 100.0
 
 
 class IntegrationFailed(ArithmeticError, InvalidMechanism):
-    """The motion could not be continued: it meets a singularity, or the numbers overflow."""
+    """The motion could not be continued because of a singularity or an overflow."""
 
 
 def hopeless(now: float, until: float, longest: float, taken: int, most: int) -> bool:
-    """Whether an integration at `now` can't reach `until` [s] in `most` steps; `longest` [s] of the steps `taken`."""
+    """Whether an integration at `now` can't reach `until` [s] in `most` steps, by its `longest` step [s]."""
     return taken > ENOUGH_STEPS and until - now > LENGTHENED * longest * (most - taken)
 
 
@@ -71,8 +71,8 @@ def integrate(
 ) -> Integrated:
     """Integrate from `start` (states,) at t = 0 to `until` [s].
 
-    The error of a step may be `tolerance` times |y| + `unit`, where `unit` (states,) is the unit of each state: 1 for
-    radians; see `units_of_motion` for rates. Raises IntegrationFailed if the step vanishes or a number is not finite.
+    The allowed error of a step is `tolerance` times |y| + `unit`. `unit` (states,) is 1 for angles; see
+    `units_of_motion` for rates. Raises IntegrationFailed if the step vanishes or a number is not finite.
     """
     state = np.asarray(start, dtype=float)
     units = np.broadcast_to(np.asarray(unit, dtype=float), state.shape)
@@ -94,12 +94,12 @@ def integrate(
 
 
 def units_of_motion(rates: Rates, start: ArrayLike, coordinate: float = 1.0) -> Array:
-    """The unit of each state (states,): coordinates, followed by their rates.
+    """The units (states,) of the coordinates and then of their rates.
 
-    The unit of coordinates is the argument: 1 rad, or the start value of a coordinate that begins near an equilibrium.
-    The unit of rates is the fastest rate of the start, or the rate of an oscillation with an amplitude of one unit and
-    the largest acceleration of the start, divided by 2 pi. It scales with the unit of time, so that the allowed error
-    does not depend on that unit.
+    The unit of coordinates is an argument: 1 rad, or the start value of a coordinate near an equilibrium. The unit of
+    rates is the larger of two rates, divided by 2 pi: the largest rate at the start, and the rate of an oscillation
+    with the start's largest acceleration and an amplitude of one unit. So the allowed error does not depend on the unit
+    of time.
     """
     state = np.asarray(start, dtype=float)
     half = len(state) // 2
@@ -111,7 +111,7 @@ def units_of_motion(rates: Rates, start: ArrayLike, coordinate: float = 1.0) -> 
 def error_of(
     rates: Rates, start: ArrayLike, t: ArrayLike, tolerance: float = STEP_TOLERANCE, unit: ArrayLike = 1.0
 ) -> Array:
-    """A bound (times,) on the error of the motion: its change if the tolerance is 10 times larger."""
+    """A bound (times,) on the error of the motion, from the difference to a tolerance 10 times larger."""
     t = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(t.max()), math.ulp(1.0))
     fine, coarse = (integrate(rates, start, until, factor * tolerance, unit)(t) for factor in (1.0, COARSER))

@@ -11,10 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-# Newton's method takes fewer than ten iterations on the curves here; bisection of the whole range of a double takes
-# about sixty more.
+# Newton's method takes fewer than ten iterations on these curves; bisection to rounding adds about sixty iterations.
 MAX_ITERATIONS = 200
-# A relative Newton step of this length or less is the last one: the error after it is below rounding, and a smaller
+# A relative Newton step of at most this length ends the iteration, since the error is then below rounding. A smaller
 # limit could be below the noise of the function.
 LAST_NEWTON_STEP = 1e-10
 
@@ -28,8 +27,8 @@ def solve_increasing(
 ) -> Array:
     """x (...) with function(x) = target (...), to a few roundings of max(|x|, scale).
 
-    `function` returns the value and the slope, both (...). It must increase within `limits` and is evaluated only
-    there; x is clipped to them. Raises ArithmeticError if a target is out of reach or not finite.
+    `function` returns its values (...) and slopes (...). It must increase within `limits` and is evaluated only there;
+    x is clipped to them. Raises ArithmeticError if a target is out of reach or not finite.
     """
     target = np.asarray(target, dtype=float)
     x = np.clip(np.array(np.broadcast_to(np.asarray(guess, dtype=float), target.shape)), *limits)
@@ -44,11 +43,11 @@ def solve_increasing(
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             following: NDArray[Any] = x + missing / slope
             middle = 0.5 * (low + high)
-        # Bisect instead of a step that is not much shorter than the last one, since such steps may oscillate for ever.
+        # Bisect unless the Newton step is much shorter than the last step, since such steps may oscillate for ever.
         shrinks = (np.abs(following - x) <= 0.75 * last_step) | ~np.isfinite(middle)
         newton = np.isfinite(following) & (following >= low) & (following <= high) & shrinks
         following = np.where(newton, following, middle)
-        # A bracket without a bound on one side has no middle: go towards that side instead.
+        # A bracket that is infinite on one side has no middle; double x in that direction.
         following = np.where(np.isfinite(following), following, x + np.sign(missing) * (np.abs(x) + scale))
         last_step = np.abs(following - x)
         x = following
@@ -58,18 +57,17 @@ def solve_increasing(
     raise ArithmeticError(f"no root was found within {MAX_ITERATIONS} iterations; the target may be out of reach")
 
 
-# From times (times,) to values (functions, times) and to the size (times,) of the terms whose sums the values are.
+# A function of times (times,) returns values (functions, times) and the size (times,) of the terms that are summed.
 Function = Callable[[Array], tuple[Array, Array]]
 
 # Degree of a Chebyshev series over one interval.
 SERIES_DEGREE = 32
-# Rounding of a few hundred operations, relative to the size: larger values than minus this number count as not
-# negative.
+# Rounding of a few hundred operations, relative to the size of the terms. A negative value within it counts as zero.
 SUM_ROUNDING = 1e-13
-# Largest coefficient in the last quarter of a converged series, relative to the size.
+# Largest coefficient in the last quarter of a converged series, relative to the size of the terms.
 CONVERGED = 1e-12
-# If halving an interval reduces the last quarter by less than this factor, the rest is the noise of the function, or a
-# jump. For an analytic function the factor is 2^-24.
+# If halving an interval reduces the last quarter of coefficients by less than this factor, these are noise or a jump.
+# For an analytic function the factor is 2^-24.
 IMPROVES = 0.25
 
 _LOBATTO_POINTS = chebyshev.chebpts2(SERIES_DEGREE + 1)
@@ -77,7 +75,7 @@ _LOBATTO_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_LOBATTO_POINTS, SERIES_
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
-    """The root of a function between `low` and `high`, where its signs differ, to rounding of the larger bound."""
+    """The root of a function whose signs differ at `low` and `high`, to rounding of the larger bound."""
     from scipy.optimize import brentq  # imported here, since the import is slow
 
     least = max(4 * np.finfo(float).eps * max(abs(low), abs(high)), np.finfo(float).tiny)
@@ -85,10 +83,10 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 
 
 def first_below(function: Function, knots: Array) -> tuple[float, int] | None:
-    """The first time at which a value is below zero, and the index of the value; None if none is below rounding.
+    """The first time at which a function is negative, and its index, or None if every function is at least -rounding.
 
-    `knots` (knots,) [s] are the ends of a motion's steps, between which its functions have few extrema. The search is
-    from the first knot to the last.
+    `knots` (knots,) [s] are the ends of a motion's steps; functions have few extrema between two knots. The search
+    covers the times from the first to the last knot.
     """
     for begin, end, values, series, noise in _pieces(function, knots):
         brackets = [
@@ -113,7 +111,8 @@ def first_below(function: Function, knots: Array) -> tuple[float, int] | None:
 
 
 def _pieces(function: Function, knots: Array) -> list[tuple[float, float, Array, Array, float]]:
-    """Intervals in order: begin, end, values at the points, series (functions, SERIES_DEGREE + 1), and their noise."""
+    """The begin and end of intervals in order, with values at the points, series (functions, SERIES_DEGREE + 1) and
+    noise."""
     begin, end = knots[:-1], knots[1:]
     last_tail = np.full(len(begin), np.inf)
     pieces: list[tuple[float, float, Array, Array, float]] = []
@@ -137,9 +136,9 @@ def _pieces(function: Function, knots: Array) -> list[tuple[float, float, Array,
 
 
 def _crossing(begin: float, end: float, values: Array, series: Array, noise: float) -> tuple[float, float] | None:
-    """Two times that bracket the first crossing of a series from above zero to below -noise; None if there is none.
+    """Two times around the first change of a series from above zero to below -noise, or None if it has no such change.
 
-    If the series is not above zero before it is below -noise, the first time is the begin.
+    If the series is nowhere above zero before that change, the first time is `begin`.
     """
     if values.min() >= -noise and series[0] - np.abs(series[1:]).sum() > 0:
         return None

@@ -1,7 +1,7 @@
 """Closed boundaries that are not round, by arc length: the ellipse, and smooth convex cams.
 
-The arc of an ellipse is an elliptic integral, continued over any number of turns. A cam has a Fourier series as its
-support function; all its functions but the inverse of the arc are in closed form.
+The arc of an ellipse is an elliptic integral, continued over any number of turns. The support function of a cam is a
+Fourier series, and only its inverse of the arc has no closed form.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ GUESSES = 257
 class Ellipse(Curve):
     """(a cos u, b sin u) [m] with the natural parameter u, counter-clockwise; semi-axes `along_x` = a, `along_y` = b.
 
-    Arc 0 is the point (a, 0), where the tangent angle is pi/2. Arc = b E(u | 1 - a^2/b^2); the incomplete integral is
-    evaluated within half a turn only, so that the relative error does not grow with the number of turns.
+    Arc 0 is the point (a, 0), where the tangent angle is pi/2. Arc = b E(u | 1 - a^2/b^2). The incomplete integral is
+    evaluated within half a turn only, so that its relative error does not grow with the turns.
     """
 
     along_x: Positive
@@ -86,7 +86,7 @@ class Ellipse(Curve):
 
     @cached_readonly
     def _half_turn(self) -> tuple[Array, Array, Array]:
-        """Parameters, arcs [m] and speeds [m] from -pi/2 to pi/2, for first guesses."""
+        """A table of parameters, arcs [m] and speeds [m] from -pi/2 to pi/2 for first guesses."""
         u = np.linspace(-math.pi / 2, math.pi / 2, GUESSES)
         return u, self.arc_of(u), self.speed_of(u)
 
@@ -96,7 +96,7 @@ class Ellipse(Curve):
         index = np.clip(np.searchsorted(arcs, rest) - 1, 0, GUESSES - 2)
         width, part = arcs[index + 1] - arcs[index], rest - arcs[index]
         x = np.clip(part / width, 0.0, 1.0)
-        first, second = width / speeds[index], width / speeds[index + 1]  # slopes of the inverse at both ends
+        first, second = width / speeds[index], width / speeds[index + 1]  # slopes at both ends of the interval
         step = u[1] - u[0]
         return u[index] + x * (first + x * (3 * step - 2 * first - second + x * (first + second - 2 * step)))
 
@@ -118,7 +118,7 @@ class Ellipse(Curve):
 
 
 def _unwrapped(angle: Array, about: Array) -> Array:
-    """The angle (...) [rad] plus whole turns, so that it is within half a turn of `about`."""
+    """The angle (...) [rad], moved by whole turns to within half a turn of `about`."""
     return angle + 2 * math.pi * np.round((about - angle) / (2 * math.pi))
 
 
@@ -130,9 +130,9 @@ class Cam(Curve):
 
     with nu its natural parameter.
 
-    The first terms shift the cam (cosines=(e,) is a disc with eccentricity e), the second make it oval, the third
-    three-lobed; a second and a third make an egg. The radius of curvature is h + h'', the arc its integral; at arc 0
-    the normal points to +x. Raises InvalidMechanism if the radius of curvature is not positive everywhere.
+    The first terms shift the cam (cosines=(e,) is a disc with eccentricity e); the second terms make it oval, the third
+    terms three-lobed. The radius of curvature is h + h'', the arc its integral; at arc 0 the normal points to +x.
+    Raises InvalidMechanism if the radius of curvature is not positive everywhere.
     """
 
     radius: Positive
@@ -168,7 +168,8 @@ class Cam(Curve):
 
     @cached_property
     def _bend_range(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """(radius of curvature, normal angle) at its minimum and maximum: roots of its derivative as a polynomial."""
+        """(radius of curvature, normal angle) at the minimum and maximum of the radius, from the roots of a
+        polynomial."""
         k, cosines, sines = self._harmonics
         half = 0.5 * (1 - k**2) * 1j * k * (cosines - 1j * sines)
         polynomial = np.concatenate([half[::-1], [0.0], np.conj(half)])
@@ -192,7 +193,7 @@ class Cam(Curve):
         return (1 / high[0], 1 / low[0])
 
     def arc_of(self, p: ArrayLike) -> Array:
-        # The integral of h + h'', with terms that are each zero at the start, to avoid cancellation for short arcs.
+        # The integral of h + h'' as a sum of terms that vanish at arc 0, to avoid cancellation for short arcs.
         normal, (k, cosines, sines) = along(p), self._harmonics
         phase = normal[..., None] * k
         harmonics = (1 / k - k) * (cosines * np.sin(phase) + 2 * sines * np.sin(0.5 * phase) ** 2)

@@ -1,4 +1,4 @@
-"""The contact of two curves, and the refusal of contacts at which rolling is not possible."""
+"""The contact of two curves; contacts at which rolling is not possible are refused."""
 
 from __future__ import annotations
 
@@ -61,7 +61,8 @@ SCAN = 721
 
 
 def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, end: float, side: int) -> float:
-    """The first arc of the body [m] in a direction `side` (+1, -1) with conformality zero, or the `end` [m].
+    """The first arc of the body [m] in the direction `side` (+1, -1) at which the curves fit each other, or the `end`
+    [m].
 
     At the start, the arc `body_arc` touches the ground at `ground_arc` [m]. end: the last arc of the curves, or
     infinity.
@@ -136,7 +137,7 @@ def refuse_overlap(body: Curve, ground: Curve, contact: Contact) -> None:
 
 
 def signed_circle(curve: Curve) -> tuple[Array, float] | None:
-    """Centre (2,) [m] and radius [m] of a circle, placed or not; None for other curves.
+    """Centre (2,) [m] and radius [m] of a circle, which may be `Placed`, or None for other curves.
 
     The radius of a hole is negative.
     """

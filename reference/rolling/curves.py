@@ -1,4 +1,4 @@
-"""Boundaries: point, tangent angle and curvature by arc length; lines and circles.
+"""The base of boundaries that are described by arc length, and the boundaries line, side, disc and hole.
 
 The convention (it replaces the chapter's "counter-clockwise", which fails for holes and straight ground):
 
@@ -114,8 +114,9 @@ class ByArc(Curve):
 
 
 def along(arc: ArrayLike) -> Array:
-    """Arcs or angles as an array of floats, which may be NaN in root searches; InvalidMechanism for other types."""
-    if type(arc) is np.ndarray and arc.dtype == np.float64:  # the fast path, used in root searches
+    """Return arcs or angles as an array of floats; raise InvalidMechanism for other types. NaN occurs in root
+    searches."""
+    if type(arc) is np.ndarray and arc.dtype == np.float64:  # saves time in root searches
         return arc
     return validate("curve", "the place", arc, Numbers)
 
@@ -213,7 +214,7 @@ class Line(ByArc):
 class Side(ByArc):
     """The lower side of a square of side `side` [m] about the origin: arcs from -side/2 to side/2, traversed to +x.
 
-    Its ends are corners of infinite curvature; arcs beyond them are refused.
+    Arcs beyond the ends are refused, since the ends are corners of infinite curvature.
     """
 
     side: Positive

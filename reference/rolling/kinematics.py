@@ -25,11 +25,11 @@ class Rolling(Valid):
     """The curve `body` rolls without slip on the fixed curve `ground`; for conventions see `reference.rolling.curves`.
 
     At the rotation `theta` [rad], which is not wrapped, the contact has the arc lengths `ground_arc` and `body_arc`
-    [m]. `Rolling.at_angle` and `Rolling.at_arcs` compute the third number from the other two.
+    [m]. `Rolling.at_angle` and `Rolling.at_arcs` compute one of these three numbers from the other two.
 
     Raises InvalidMechanism if the tangents at the start differ, if curvature_A + curvature_B is below `NEAR_CONFORMAL`
-    of the larger curvature, if an arc is not on its curve, or if a closed curve is not inside its ring. A second
-    contact of curves that are neither convex nor a ring is not detected.
+    of the larger curvature, if an arc is not on its curve, or if a closed curve is not inside its ring. If the curves
+    are neither convex nor a ring, a second contact is not detected.
     """
 
     body: Curve
@@ -85,7 +85,7 @@ class Rolling(Valid):
     def _ground_arc(self, body_arc: Array) -> Array:
         """The arc of the ground (...) [m] in contact with the body at `body_arc` (...) [m].
 
-        An arc beyond or before an end of the ground by a rounding error is set to the end.
+        An arc that differs from an end of the ground by rounding only is set to that end.
         """
         arc = self.ground_arc + (self.body_arc - body_arc)
         rounding = 4 * np.finfo(float).eps * (abs(self.ground_arc) + abs(self.body_arc))
@@ -130,8 +130,8 @@ class Rolling(Valid):
         circles = signed_circle(self.ground), signed_circle(self.body)
         if circles[0] is not None and circles[1] is not None:
             ground, body = circles[0][1], circles[1][1]
-            # The sum of the signed radii is used, since angles cancel for a disc in a hole of nearly its
-            # size.
+            # The sum of the signed radii has no cancellation for a disc in a hole of nearly the same size, as angles
+            # would have.
             return self._body_start - rotation * (body * (ground / (ground + body)))
         low, high = self.limits
         slack = 1e-12 * (1 + abs(self.theta))
@@ -148,7 +148,7 @@ class Rolling(Valid):
 
     @cached_property
     def _mean_slope(self) -> float:
-        """Mean decrease of the body's parameter per radian of rotation, used as a first guess."""
+        """Mean decrease of the body's parameter per radian of rotation, for the first guess of a root search."""
 
         def mean(curve: Curve) -> float:
             low, high = curve.curvature_range
@@ -198,7 +198,7 @@ class Rolling(Valid):
 
     @validated
     def position(self, theta: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
-        """Positions (..., 2) [m] of a point of the body, which is given in the body's frame [m]: the roulette."""
+        """The roulette: positions (..., 2) [m] of a point of the body; `point` [m] is in the body's frame."""
         contact = self.contact(theta)
         return contact.point + self._arm(contact, point)
 

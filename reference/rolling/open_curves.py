@@ -1,4 +1,4 @@
-"""Curved boundaries that are not closed: Parabola, Catenary, LogSpiral, for the classical roulettes."""
+"""Parabola, catenary and logarithmic spiral as boundaries, for the classical roulettes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from reference.rolling.curves import Array, ByArc, Curve, along, within
 
 
 def _slope(owner: str, angle: ArrayLike) -> Array:
-    """tan(angle); InvalidMechanism for angles of a quarter turn or more, which these curves don't have."""
+    """tan(angle); raises InvalidMechanism for angles of a quarter turn or more, which these curves don't have."""
     angle = along(angle)
     if not np.all(np.abs(angle) < math.pi / 2):
         worst = float(angle.flat[int(np.argmax(np.abs(angle)))])
@@ -35,7 +35,7 @@ class Parabola(Curve):
     def parameter(self, arc: ArrayLike) -> Array:
         """p = asinh(slope), with arc = focal (p + sinh(2p)/2)."""
         scaled = along(arc) / self.focal
-        # The limits are exact: arc / focal is 2p for small p and exp(2p)/4 for large p.
+        # For small p, arc / focal is 2p. For large p it is exp(2p)/4, so a logarithm limits the guess.
         guess = np.sign(scaled) * np.minimum(np.abs(scaled) / 2, np.log1p(2 * np.abs(scaled)))
         return solve_increasing(lambda q: (q + 0.5 * np.sinh(2 * q), 1 + np.cosh(2 * q)), scaled, guess, 1e-3)
 
@@ -138,7 +138,7 @@ class LogSpiral(Curve):
     def point_of(self, p: ArrayLike) -> Array:
         p = along(p)
         radius = self.radius * np.exp(self.growth * p)
-        turn = np.where(np.isfinite(p), p, 0.0)  # at the pole, where the radius is zero, any angle
+        turn = np.where(np.isfinite(p), p, 0.0)  # at the pole the radius is zero, and any angle will do
         return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1)
 
     def angle_of(self, p: ArrayLike) -> Array:

@@ -18,16 +18,16 @@ from reference.rolling.kinematics import Rolling
 
 @dataclass(frozen=True)
 class Roll(BetweenTwo, JointElement):
-    """Ideal rolling of two bodies (18.66): at the contact, the materials of both bodies have the same velocity.
+    """Ideal rolling of two bodies (18.66): both bodies have the same velocity at the contact.
 
-    `rolling` has both curves, `ground` in the frame of the first body (None: the world) and `body` in that of the
-    second, each from its centre of mass, and the contact at the start. The contact is a function of the relative
-    rotation alone, so the joint is holonomic.
+    `rolling` has two curves and their contact at the start. `ground` is in the frame of the first body or the world,
+    and `body` is in the frame of the second body, both from the centre of mass. The contact is a function of the
+    relative rotation alone, so the joint is holonomic.
 
-    Rows: relative velocity at the contact along e_t, in which the first's curve is traversed, then along e_n towards
-    the interior of the second (see `reference.rolling.curves`). They are the derivatives of the gap where it is zero.
-    Reactions on the second body [N]: friction along e_t, and the normal force, which presses where positive; this
-    joint can pull.
+    Rows: relative velocity at the contact along e_t, in which `ground` is traversed, then along e_n towards the
+    interior of the second body (see `reference.rolling.curves`). If the gap is zero, the rows are its derivatives.
+    Reactions on the second body [N]: friction along e_t, and the normal force along e_n, which is negative if the joint
+    pulls.
     """
 
     size: ClassVar[int] = 2
@@ -58,7 +58,7 @@ class Roll(BetweenTwo, JointElement):
     def _contact(self, theta: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
         """Contact point, arm r_{O'/C} (..., 2) and tangent angle (...), in the first body's frame.
 
-        A complex rotation is continued by the first derivative, which is exact for a complex step.
+        The imaginary part of a rotation is multiplied by the first derivative, which is exact for a complex step.
         """
         contact = self._contact_at(np.real(theta))
         if not np.iscomplexobj(theta):
@@ -79,7 +79,7 @@ class Roll(BetweenTwo, JointElement):
         return []
 
     def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
-        """Position of the second body minus that of ideal rolling at its rotation, along e_t and e_n (..., 2) [m]."""
+        """Displacement of the second body from ideal rolling at the same rotation, along e_t and e_n (..., 2) [m]."""
         point, arm, angle = self._contact(np.asarray(second[..., 2] - first[..., 2]))
         x, y = components(first[..., 2], point[..., 0] + arm[..., 0], point[..., 1] + arm[..., 1])
         open_x, open_y = second[..., 0] - first[..., 0] - x, second[..., 1] - first[..., 1] - y

@@ -1,4 +1,4 @@
-"""A boundary through given points: a spline of degree 7 in a given parameter, by arc length."""
+"""A boundary by arc length that is a spline of degree 7 through points."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from reference.rolling.curves import Array, Curve, along, within
 from reference.validators import of_shape
 
 SPLINE_DEGREE = 7
-# Points of a curve, at least: more than twice the degree, so that a spline through half of the points shows the error.
+# Minimum number of points of a curve. It is more than twice the degree, so that a spline through half of the points
+# shows the error.
 FEWEST = 16
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 # Smallest speed along the curve, relative to the mean speed, at which the tangent is determined.

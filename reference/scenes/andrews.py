@@ -175,7 +175,7 @@ class Andrews(PlacedScene):
 
     def _states(self, times: Array) -> Array:
         """phi and phi' (times, 2) [rad, rad/s]."""
-        if not times.any():  # only the start, as for a mechanism
+        if not times.any():  # a mechanism needs only the start
             return np.full((len(times), 2), (self.angle, 0.0), dtype=float)
         until = max(self.duration, float(times.max()))
         return shared(Andrews._solved, self, until)(times * self.rate_unit) * [1.0, self.rate_unit]

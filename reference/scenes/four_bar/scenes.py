@@ -185,7 +185,7 @@ class FreeFourBar(FourBarScene):
     def _angles(self, times: Array, stages: int = STAGES) -> BarAngles:
         curve = self._curve
         start = curve.start(self.start, self.rate, self.branch)
-        if not times.any():  # only the start, as for a mechanism
+        if not times.any():  # a mechanism needs only the start
             return curve.bar_angles(np.repeat(start[None], len(times), axis=0))
         try:
             states = shared(FreeFourBar._solved, self, max(self.duration, float(times.max())), stages)
