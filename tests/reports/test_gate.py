@@ -24,7 +24,7 @@ from reports.model.quantities import QUANTITIES
 from tests.toys import Disc, Toy
 
 SCENE = Disc()
-# A judge whose errors are round numbers: second order 1e-4, fourth 1e-8 at a step of 1e-2, so a factor of 100 an order.
+# The judge's errors are 1e-4 with the second order and 1e-8 with the fourth order at a step of 1e-2 s.
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
 
@@ -47,12 +47,11 @@ FINE = 1e-3
 
 
 def row(every: int = 10, outcome: Outcome = Outcome.FINISHED, **errors: Any) -> Measurement:
-    """A row of the toy at 1e-2 / every [s], every error 1e-9 unless it is given."""
+    """A row of the toy at the step 1e-2 / every [s]; errors that are not given are 1e-9."""
     return replace(blank(Cell(SCENE, Toy(), every), outcome), **{**dict.fromkeys(NAMES, 1e-9), **errors})
 
 
 def alone(quantity: str, error: float) -> dict[str, Any]:
-    """One error by its name."""
     return {quantity: error}
 
 
@@ -72,7 +71,7 @@ def test_two_orders_tell_what_any_order_costs(order_of, expected):
 
 @pytest.mark.parametrize("quantity", NAMES)
 def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
-    # Second order at a tenth of the judge's step: a hundredth of 1e-4, and the room above it.
+    # With the second order, a tenth of the judge's step has a hundredth of its error, which is 1e-4.
     result = theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
     assert [check.quantity for check in result if not check.passed] == [quantity]
     assert all(
@@ -87,7 +86,7 @@ def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
         (True, {"compliance": 0.005}, 5e-4),
         (True, {"stiffness": 25000.0}, 1e-4),
         (True, {"stiffness": 25000.0, "damping": 50.0}, 1e-4),
-        (False, {"stiffness": 25000.0, "damping": 50.0}, 2e-3),  # without a gap a row yields by its damper
+        (False, {"stiffness": 25000.0, "damping": 50.0}, 2e-3),  # the compliance of a nonholonomic row is its damper's
     ],
 )
 def test_softness_costs_in_proportion_to_compliance_over_stiffness(holonomic, change, give):
@@ -97,7 +96,7 @@ def test_softness_costs_in_proportion_to_compliance_over_stiffness(holonomic, ch
 
 
 def coarser(quantity: str = "angle", **errors: Any) -> list[Measurement]:
-    """Rows at larger steps: `at1=1e-7` is the error of one step in 1e-2 s."""
+    """Rows at larger steps. `at3=1e-7` is the error with three steps between samples 1e-2 s apart."""
     return [row(every=int(name[2:]), **{quantity: error}) for name, error in errors.items()]
 
 
@@ -108,7 +107,7 @@ LOST = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkey
 WILD = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
 PRESCRIBED = replace(JUDGE, prescribed=True, lag=dict.fromkeys(NAMES, 2.0))
 Given = tuple[Prediction, ConvergenceOrder | NotDeclared, Regularisation | None, list[Measurement]]
-BOUNDS: dict[str, tuple[Given, str, float]] = {  # the declared facts of a row, a quantity, and its bound
+BOUNDS: dict[str, tuple[Given, str, float]] = {  # (arguments of `theory`, quantity, bound of its error)
     "two coarser steps bound by the promised order": (
         (JUDGE, ConvergenceOrder(2), None, coarser(at1=1e-7, at3=1e-8)), "angle", ROOM_OWN * 1e-9 + 1e-11),
     "one coarser step may be luck": (
@@ -120,11 +119,11 @@ BOUNDS: dict[str, tuple[Given, str, float]] = {  # the declared facts of a row, 
     "a promise of all others": ((JUDGE, ConvergenceOrder(4, rate=2), None, []), "angle", ROOM * 1e-12 + 1e-11),
     "an exact gap": ((JUDGE, ConvergenceOrder(4, gap=EXACT), None, []), "gap", 1e-12),
     "a reaction of a single step without a promise": ((JUDGE, UNKNOWN, None, []), "reaction", 0.5),
-    # 2 rad/s^2 for half of a thousandth, whatever the coarser steps allow; a spring lags by its own time.
+    # The bound of the rate is 2 rad/s^2 times half a step of 1e-3 s, although the coarser steps allow more.
     "the middle of a step": (
         (PRESCRIBED, ConvergenceOrder(2, rate=1), None, coarser("rate", at1=1e-2, at3=3.3e-3)),
         "rate", 1.25e-3 + 1e-10),
-    # The coarsest would allow 1.25e-7, and with the room of a free motion 2.5e-7.
+    # The coarsest step would allow 1.25e-7, or 2.5e-7 in a motion that is not prescribed.
     "prescribed, the next coarser step": (
         (PRESCRIBED, ConvergenceOrder(2), None, coarser(at1=1e-5, at3=1e-7, at5=4e-8)), "angle", 1.25e-8 + 1e-11),
     "free, all coarser steps": (
@@ -152,7 +151,7 @@ def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
 def test_rounding_of_a_change_of_velocity_is_carried_by_a_combination_of_runs():
     for carried in (1.0, 17.0):
         result = of(theory(JUDGE, ConvergenceOrder(2, differences=8, amplified=carried), None, row()), "reaction")
-        # 1e-10 m/s over 1/8000 s in parts of 10 m/s^2, above the 1e-9 of any reaction.
+        # A rounding of 1e-10 m/s over 1/8000 s relative to 10 m/s^2 is 8e-8; any reaction has 1e-9 in addition.
         assert dict(result.terms)["rounding"] == pytest.approx(carried * 8e-8 + 1e-9, rel=1e-12)
 
 
@@ -187,7 +186,8 @@ def test_a_number_that_is_none_fails_unless_there_is_none_to_tell_and_that_is_co
         assert count_vacuous(theory(none, ConvergenceOrder(1), None, row(gap=math.nan))) == {
             "the scene does not have this quantity": 1
         }
-    for coarse in permutations(coarser(at1=math.nan, at2=1e-7, at3=1e-8)):  # a step without a number bounds nothing
+    # a step with an unknown error gives no bound
+    for coarse in permutations(coarser(at1=math.nan, at2=1e-7, at3=1e-8)):
         bound = of(theory(JUDGE, ConvergenceOrder(2), None, row(), coarse), "angle").bound
         assert bound == pytest.approx(ROOM_OWN * 1e-7 * (2 / 10) ** 2 + 1e-11)
 
@@ -205,8 +205,8 @@ def falling_errors(power: float, points: int = 4) -> tuple[float, ...]:
     [
         (2, falling_errors(2), True),
         (2, falling_errors(1.7), True),
-        (2, falling_errors(1), False),  # Too slowly.
-        (1, falling_errors(2), False),  # The promise is weaker than the method.
+        (2, falling_errors(1), False),  # The error falls too slowly.
+        (1, falling_errors(2), False),  # The declared order is below the observed order.
         (1, (1e-3, 3.3e-4, 3.2e-4, 3.1e-4), False),  # A plateau.
         (1, (1e-3, 3.3e-4, 3.2e-4), False),  # Levels off.
         (1, (1e-5, 1e-4, 1e-3, 1e-2), False),  # grows.
@@ -234,7 +234,7 @@ def toy_checks(engine: Toy) -> tuple[Check, ...]:
     [
         (Toy("good", factor=1.0), set()),
         (Toy("bad", factor=30.0), {"error"}),
-        # The model has a constant error, and at every step it is below the judge's own bound.
+        # This toy has a constant error, which at every step is below the bound from the judge.
         (Toy("soft", factor=1.0, plateau=2e-6), {"error", "order"}),
     ],
     ids=lambda value: getattr(value, "variant", ""),

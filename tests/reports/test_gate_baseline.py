@@ -75,7 +75,7 @@ def test_the_bound_of_a_change_is_what_other_roundings_do_and_never_zero():
     now, earlier = row(angle=2.29e-14, velocity=5e-10), old(angle=2.55e-14, velocity=0.0)
     assert of(change(now, earlier), "angle").passed
     assert not of(change(now, earlier), "velocity").passed
-    assert of(change(now, earlier, amplified=17.0), "velocity").passed  # as much as a combination of runs carries
+    assert of(change(now, earlier, amplified=17.0), "velocity").passed  # a combination of runs amplifies rounding
 
 
 @pytest.mark.parametrize("gate", [change, drift])
@@ -127,7 +127,7 @@ def test_another_outcome_fails_with_the_same_versions_and_an_improvement_is_a_re
 
 
 def of_scenes(*factors: float) -> list[tuple[Measurement, Old]]:
-    """One pair per scene: a row whose angle error is `factor` times 1e-5, and its baseline row of 1e-5."""
+    """For each scene, a row whose angle error is a factor times 1e-5, and its baseline row with the error 1e-5."""
     return [(replace(row(angle=1e-5 * f), scene=f"scene {n}"), old(angle=1e-5)) for n, f in enumerate(factors)]
 
 
@@ -135,7 +135,8 @@ def test_in_many_scenes_a_method_may_not_be_nearly_three_times_as_wrong_in_the_m
     def failed(*factors: float) -> list[str]:
         return [check.quantity for check in growth(of_scenes(*factors)) if not check.passed]
 
-    # One scene may have become three times as wrong by luck; of nine scenes the median scatters 1.25 / 3 as much.
+    # By chance the error in one scene may rise by a factor of 3. The median of nine scenes scatters 1.25 / sqrt(9)
+    # times as much.
     assert failed(2.9) == []
     assert failed(*[2.9] * 9) == ["angle"]
     assert failed(*[3 ** (1.2 / 3)] * 9) == []
@@ -191,7 +192,7 @@ def test_run_and_check_compares_each_row_and_its_cost_with_the_baselines_row_of_
         return {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": value})}
 
     lacking = {key: value for key, value in same.items() if key != coarsest}
-    # With other versions a number may differ, but not be more than three times as large.
+    # With other versions a number may be up to three times as large.
     for cells, versions, new, reported in (
         (same, "", 0, []),
         (angle(1e-12), "", 0, ["it was 1e-12"]),
@@ -216,7 +217,7 @@ def written(path: Path, *measured: Measurement) -> Path:
 
 
 def test_a_baseline_is_read_as_it_was_written_with_the_versions_and_times_beside_it(tmp_path):
-    experiment = replace(row(angle=0.3), purpose="usual")  # at the step of a row of the sweep
+    experiment = replace(row(angle=0.3), purpose="usual")  # this row has the step of a row of the sweep
     path = written(tmp_path / "errors.csv", row(angle=1.5e-5), row(every=3, outcome=Outcome.TORN), experiment)
     baseline = read_baseline(path)
     assert baseline.cells[identity(row())].errors["angle"] == 1.5e-5

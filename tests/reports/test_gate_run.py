@@ -1,4 +1,4 @@
-"""The grid as a suite of pytest, its judge beside the cells, and wrong engines that it is asked about."""
+"""Tests of the grid as a suite of pytest, of the judge's processes, and of the gate with wrong engines."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.wrong.adapters import SMALL_MISTAKES, Wrong
 
 @dataclass(frozen=True)
 class Absent(Toy):
-    """One whose package is not installed."""
+    """An engine whose package is not installed."""
 
     @property
     def missing(self) -> str:
@@ -50,7 +50,7 @@ def test_case(verdicts, case):
 
 @pytest.fixture
 def suite(pytester):
-    """A grid of three toys in a folder of its own."""
+    """A test suite with a grid of three toy engines in a temporary folder."""
     root = ROOT
     pytester.makeini(f"[pytest]\npythonpath = {root}\n")
     pytester.makeconftest('pytest_plugins = ["reports.gate.pytest_plugin"]')
@@ -60,7 +60,7 @@ def suite(pytester):
 
 
 def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite, at_home):
-    """A test of all verdicts is kept with it, and one of nothing is not."""
+    """A test that uses the fixture `verdicts` is run with the selected cases; a test without it is deselected."""
     suite.makepyfile(
         f"{SUITE}\ndef test_of_all(verdicts):\n    assert len(verdicts) == 1\n\ndef test_of_nothing(): pass\n"
     )
@@ -80,7 +80,7 @@ def test_an_engine_that_is_not_there_is_skipped_with_its_extra():
 
 
 def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
-    """As pytest-xdist marks the configuration of its workers."""
+    """The attribute `workerinput` marks the configuration of a worker of pytest-xdist."""
     suite.makeconftest(
         'pytest_plugins = ["reports.gate.pytest_plugin"]\ndef pytest_configure(config): config.workerinput = {}\n'
     )
@@ -123,7 +123,8 @@ class Cut(Disc):
 
 @pytest.mark.parametrize(
     ("until", "samples"),
-    [(11.5, 11), (1e-3, 1), (27, 27)],  # less than a sample is one; 27 of them divide to a rounding below 27
+    # The horizon of 27 samples divided by their spacing is rounded to a number below 27.
+    [(11.5, 11), (1e-3, 1), (27, 27)],
 )
 def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at_least(monkeypatch, until, samples):
     monkeypatch.setattr(Cut, "until", until * (0.705 / 70))
@@ -131,7 +132,7 @@ def test_the_judge_ends_at_the_last_sample_that_can_be_compared_and_takes_one_at
 
 
 class Unknown(Disc):
-    """A scene without a truth."""
+    """A scene whose reference motion can't be computed."""
 
     name = "unknown disc"
 
@@ -156,7 +157,7 @@ ASKED = (
     "reactions have the other sign",
 )
 
-# What can't be told from the method's own error there, in rad, m, rad/s or parts of the largest reaction.
+# (engine, mistake) -> the reason why the mistake is not detected.
 SYMMETRIC = (
     "its own velocities are half a step early, so a step before they are half a step late: 7.6e-4 rad/s at 1e-5 s"
 )

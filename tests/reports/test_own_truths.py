@@ -23,9 +23,9 @@ from reference.checks import InvalidMechanism
 from reports.check.checked import SweepPlan, check
 from reports.check.judging import refuse_disagreement
 
-CLOSE = 1e-8  # rad or m: the judge's tolerance is 1e-12 of a step, and these motions take a few hundred
+CLOSE = 1e-8  # rad or m; the judge's tolerance is 1e-12 for a step, and these motions have a few hundred steps
 INERTIA = 0.5
-NOTHING = SweepPlan(0.0)  # no settings but the user's own are run
+NOTHING = SweepPlan(0.0)  # only the user's settings are run
 WHEEL = (
     '<body name="w"><joint name="a" axis="0 1 0" {0}/><inertial pos="0 0 0" mass="1" diaginertia=".5 .5 .5"/></body>'
 )
@@ -33,7 +33,7 @@ LIFT = '<body name="l"><joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" m
 
 
 def mjcf(bodies, more="", flags="", rate=0.0, control=0.0, joint=""):
-    """The reading of a model without weight and contact, with its first coordinate at a rate."""
+    """The reading of a model without contacts; `rate` is the initial velocity of its first coordinate."""
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><compiler angle="radian"/><option actuatorgroupdisable="3"><flag contact="disable" {flags}/></option>'
         f"<worldbody>{bodies.format(joint)}</worldbody>{more}</mujoco>"
@@ -44,7 +44,7 @@ def mjcf(bodies, more="", flags="", rate=0.0, control=0.0, joint=""):
 
 
 def judged_turn(reading, samples=50, spacing=0.02, body=0, coordinate=2):
-    """Times, and how far a body's coordinate has gone since the start."""
+    """The times, and the change of one coordinate of a body since the start."""
     motion = TRUTH.build(reading.mechanism, spacing)(samples, 1)
     return motion.t, motion.pose[:, body, coordinate] - motion.pose[0, body, coordinate]
 
@@ -53,7 +53,7 @@ def judged_turn(reading, samples=50, spacing=0.02, body=0, coordinate=2):
 
 
 def servo(t, gear, k=3.0, d=0.4, u=0.3):
-    """I q'' = g (k (u - g q) - d g q'): a damped oscillation about u / g."""
+    """The solution of I q'' = g (k (u - g q) - d g q'), which is a damped oscillation about u / g."""
     decay = d * gear**2 / (2 * INERTIA)
     rate = sqrt(gear**2 * k / INERTIA - decay**2)
     return u / gear * (1 - np.exp(-decay * t) * (np.cos(rate * t) + decay / rate * np.sin(rate * t)))
@@ -62,7 +62,8 @@ def servo(t, gear, k=3.0, d=0.4, u=0.3):
 MOTOR = '<motor joint="a" gear="2" {0}/>'
 RANGE = MOTOR.format('ctrlrange="-1 1.5" ctrllimited="true"')
 BRAKE = '<velocity name="brake" joint="a" kv="1" forcerange="-1.5 1.5"/>'
-# Actuators, a flag, control, rate [rad/s], and the angle [rad] of the wheel at times t, or a constant torque [N m].
+# (actuators, flag, control, initial rate [rad/s], angle of the wheel [rad] as a function of time or constant torque [N
+# m])
 TURNS: dict[str, tuple[str, str, float, float, Any]] = {
     "servo": ('<position joint="a" kp="3" kv=".4" gear="2"/>', "", 0.3, 0.0, lambda t: servo(t, 2.0)),
     "servo the other way": ('<position joint="a" kp="3" kv=".4" gear="-.5"/>', "", 0.3, 0.0, lambda t: servo(t, -0.5)),
@@ -85,7 +86,7 @@ def test_an_actuator_turns_a_wheel_as_mujoco_documents(case):
 
 
 def test_a_limit_that_the_velocity_reaches_is_seen():
-    """A velocity servo of 1 N m s at rest pushes against a rate of 2 rad/s with 2 N m."""
+    """The servo with the gain 1 N m s and the control 0 has a torque of -2 N m at 2 rad/s."""
     with pytest.raises(Unsupported, match=r"^actuator 'brake' reaches the limit of its force: so it does at the"):
         mjcf(WHEEL, f"<actuator>{BRAKE}</actuator>", rate=2.0)
 
@@ -109,7 +110,7 @@ LIMITS = {
 
 @pytest.mark.parametrize("name", LIMITS)
 def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached(name):
-    """q = q'0 / W sin(W t) with W^2 = g^2 k / I; the actuator's force k g q grows to 0.6 and the joint's to 1.2."""
+    """The motion is q = q'0 / W sin(W t) with W^2 = g^2 k / I; the actuator's force k g q reaches its limit 0.6."""
     k, gear, rate = 3.0, 2.0, 1.0
     _, linkage, joint, element = LIMITS[name]
     text = f'<actuator><position name="servo" joint="a" kp="{k}" gear="{gear}" {linkage}/></actuator>'
@@ -120,9 +121,9 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
         check(reading, "servo", 1.0, 1e-3)
     message = str(refused.value)
     time = float(message.split(" at ")[1].split(" s")[0])
-    assert at <= time <= at + 0.005  # motions are looked at every 1 ms, and three digits are printed
+    assert at <= time <= at + 0.005  # forces are checked every 1 ms, and three digits are printed
     assert message.endswith(left_out("forcelimit"))
-    # In the advised duration, and with the limit switched off, the same model is checked.
+    # The model is checked within the advised duration, or with the limit switched off.
     duration = float(message.split("--duration ")[1].split(";")[0])
     assert check(reading, "servo", duration, 1e-3, plan=NOTHING).met
     without = read_mjcf(reading.model.planar.model, reading.model.planar.data, ("forcelimit",))  # type: ignore[attr-defined]
@@ -130,7 +131,7 @@ def test_a_limit_of_a_servos_force_is_named_with_the_time_at_which_it_is_reached
 
 
 def test_a_limit_is_seen_that_is_passed_between_two_samples():
-    """A body thrown up passes its limit for 4 ms about 0.205 s, the middle of two samples of 10 ms."""
+    """A thrown body is above its limit for 4 ms, between two samples 10 ms apart."""
     rate = 9.81 * 0.205
     highest = rate**2 / 2 / 9.81 - 9.81 * 0.002**2 / 2
     lift = LIFT.replace('axis="0 0 1"', f'axis="0 0 1" range="-99 {highest!r}" limited="true"')
@@ -143,12 +144,12 @@ def test_a_limit_is_seen_that_is_passed_between_two_samples():
 
 @pytest.mark.parametrize("flag", ["", 'gravity="disable"'])
 def test_what_is_applied_to_joints_and_bodies_acts_in_its_direction(flag):
-    """Forces and torques that are given in the data: on a free body off its frame, and on a hinge."""
+    """The data contain a torque on a hinge, and a force and a torque on a free body."""
     box = '<body name="f" pos="2 0 0"><freejoint/><inertial pos=".3 0 .1" mass="2" diaginertia=".5 .5 .5"/></body>'
     world = f"<worldbody>{WHEEL.format('')}{box}</worldbody>"
     model = mujoco.MjModel.from_xml_string(f'<mujoco><option><flag contact="disable" {flag}/></option>{world}</mujoco>')
     data = mujoco.MjData(model)
-    data.qfrc_applied[0] = 0.7  # about y, which the plane of x and z counts backwards
+    data.qfrc_applied[0] = 0.7  # about y; angles in the plane of x and z have the opposite sign
     data.xfrc_applied[2] = [3.0, 0.0, -1.0, 0.0, 0.4, 0.0]
     motion = TRUTH.build(read_mjcf(model, data).mechanism, 0.02)(50, 1)
     gone, half = motion.pose - motion.pose[0], motion.t**2 / 2
@@ -182,7 +183,7 @@ def wall(angle):
 
 @pytest.mark.parametrize("first", [True, False], ids=["the wall first", "the body first"])
 def test_a_torsion_spring_to_a_turned_static_body_is_at_ease_where_chipmunk_says(first):
-    """At ease where the first angle less the second is the rest angle; about there the body swings as a cosine."""
+    """The torque is zero if the first angle minus the second is the rest angle; the body oscillates about this pose."""
     turned, rest, k = 0.7, 0.3, 4.0
     body, post = disc(angle=0.2), wall(turned)
     ease = turned - rest if first else turned + rest
@@ -196,7 +197,8 @@ def test_a_torsion_spring_to_a_turned_static_body_is_at_ease_where_chipmunk_says
 
 @pytest.mark.parametrize("first", [True, False], ids=["the wall first", "the body first"])
 def test_a_gear_to_a_turned_static_body_holds_the_angle_that_chipmunk_holds(first):
-    """ratio times the second angle less the phase is the first: with this angle it is closed, with another open."""
+    """The first angle must be the ratio times the second angle minus the phase; with any other angle the gear is
+    open."""
     turned, phase, ratio = 0.4, 0.3, 2.5
     angle = (turned + phase) / ratio if first else ratio * turned - phase
 
@@ -215,7 +217,7 @@ def test_a_gear_to_a_turned_static_body_holds_the_angle_that_chipmunk_holds(firs
 
 @pytest.mark.parametrize("speed", [1.0, -1.0])
 def test_both_ends_of_a_groove_are_ends(speed):
-    """From 0.1 beside the middle of a groove of 1.2 m at 1 m/s: 0.5 s to one end, 0.7 s to the other."""
+    """A body at 1 m/s starts 0.5 m from one end of a groove and 0.7 m from the other end."""
     body = disc((0.1, 0.0))
     body.velocity = (speed, 0.0)
     space = space_of(body)
@@ -229,7 +231,7 @@ def test_both_ends_of_a_groove_are_ends(speed):
 
 @pytest.mark.parametrize("masks", [(1, 1), (2, 2), (2, 1)], ids=["the first's", "the second's", "neither"])
 def test_shapes_meet_only_if_the_filters_of_both_allow_it(masks):
-    """pymunk is the oracle: its own bodies fly through each other, or do not."""
+    """pymunk itself shows whether the bodies pass through each other."""
     bodies = disc((-1.0, 0.0)), disc((1.0, 0.0))
     space = space_of(*bodies)
     for body, mine, mask, speed in zip(bodies, (1, 2), masks, (1.0, -1.0), strict=True):
@@ -274,7 +276,7 @@ def swinging(threshold, idle):
 
 
 def test_a_body_that_may_fall_asleep_is_named_with_the_time():
-    """Slower than 0.02 m/s, as pymunk counts, for 0.3 s and longer."""
+    """pymunk puts a body to sleep after 0.3 s with a speed below 0.02 m/s."""
     space = swinging(0.3, 0.02)
     with pytest.raises(
         Unsupported, match=r"^body 1 may fall asleep at 0\.30?\d? s.* --without sleep judges your model without it"
@@ -286,14 +288,14 @@ def test_a_body_that_may_fall_asleep_is_named_with_the_time():
     assert bob.is_sleeping
     with pytest.raises(Unsupported, match=r"^body 1: it is asleep at the start"):
         read_space(space, 0.01)
-    bob.activate()  # Pymunk (7.3.1) ends the process where a space with a sleeping body is freed.
-    # It is checked if it is awake: with sleep left out, or too fast to sleep.
+    bob.activate()  # Pymunk 7.3.1 crashes if a space with a sleeping body is freed.
+    # The model is checked without sleep, or if the body is always too fast to sleep.
     assert check(read_space(swinging(0.3, 0.02), 0.001, ["sleep"]), "awake", 1.0, 1e-1, plan=NOTHING).met
     assert check(read_space(swinging(0.3, 1e-5), 0.001), "fast", 1.0, 1e-1, plan=NOTHING).met
 
 
 def test_without_a_threshold_of_its_own_a_space_counts_what_gravity_adds_in_a_step():
-    """Chipmunk's rule: 0.098 m/s at steps of 10 ms; and what turns is not idle."""
+    """The limit is the velocity that gravity adds in a step of 10 ms, 0.098 m/s; a rotating body is not idle."""
     with pytest.raises(Unsupported, match=r"^body 1 may fall asleep"):
         check(read_space(swinging(0.3, 0.0), 0.01), "asleep", 0.5, 1e-1)
     spinning = disc()

@@ -1,4 +1,4 @@
-"""The fit returns the orders and plateaus of invented errors; and the steps that people use."""
+"""Tests of the fit of orders and plateaus to invented errors, and of runs at the steps that people use."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ ROUNDING = 1e-11
 def test_a_floor_above_rounding_is_a_plateau_and_leaves_the_order_alone(order, floor):
     result = fit(STEPS, (10 * STEPS) ** order + floor, ROUNDING)
     assert result.verdict is Verdict.PLATEAU
-    # The power and its factor are fitted with the limit, so that three exact points give it up to rounding.
+    # The limit is fitted together with a power of the step, so it is exact up to rounding.
     assert result.plateau == pytest.approx(floor, rel=1e-6)
-    # The falling part carries up to a third of the floor.
+    # The points of the falling part contain the floor, which reduces the fitted order by up to a third.
     assert result.order == pytest.approx(order, abs=0.35 * order)
     assert result.points >= 2
     power = fit(STEPS, 3 * STEPS**order, ROUNDING)
-    # A pure power in double precision: the slope is exact up to the rounding of logarithms.
+    # The slope of a pure power is exact up to the rounding of logarithms.
     assert power.order == pytest.approx(order, abs=1e-9)
     assert power.points == np.sum(3 * STEPS**order > ROUNDING)
     assert power.verdict is (Verdict.ROUNDING if order == 4 else Verdict.FALLS)
@@ -56,11 +56,11 @@ def test_a_plateau_is_the_limit_at_a_step_of_zero_and_no_mean_of_the_points_befo
     # The uncertainty is the difference between the finest error and the limit.
     assert result.uncertainty == pytest.approx(abs(errors[-1] - 1e-3), rel=1e-3)
     mean = np.exp(np.mean(np.log(errors[-4:])))
-    assert abs(mean - 1e-3) > 4 * result.uncertainty  # the mean of the flat end is off by more than the uncertainty
+    assert abs(mean - 1e-3) > 4 * result.uncertainty  # the mean of the last errors differs by more than the uncertainty
 
 
 def test_an_error_that_changes_sign_and_rises_to_a_limit_has_a_plateau_above_its_smallest_value():
-    # Two errors of opposite sign: at 5e-4 s they cancel, and no smaller step is as good.
+    # Two errors of opposite sign cancel at 5e-4 s; at all smaller steps their sum is larger.
     steps = STEPS[:6]
     errors = abs(1e-3 - 2 * steps)
     rows = [row_of("a x", step=step, angle=error) for step, error in zip(steps, errors, strict=True)]
@@ -78,7 +78,7 @@ def test_scattered_errors_have_the_plateau_of_the_finest_step_with_their_scatter
     result = fit(STEPS[:5], [1e-2, 1.2e-3, 1.0e-3, 1.15e-3, 1.1e-3], ROUNDING)
     assert (result.verdict, result.plateau) == (Verdict.PLATEAU, 1.1e-3)
     assert result.uncertainty == pytest.approx(1e-4)
-    faster = fit(STEPS[:5], [1e-2, 1.0e-3, 1.1e-3, 1.15e-3, 1.3e-3], ROUNDING)  # more at each step: no limit in sight
+    faster = fit(STEPS[:5], [1e-2, 1.0e-3, 1.1e-3, 1.15e-3, 1.3e-3], ROUNDING)  # errors rise at each smaller step
     assert (faster.verdict, faster.plateau) == (Verdict.PLATEAU, 1.3e-3)
     assert faster.uncertainty == pytest.approx(2e-4)
 
@@ -115,7 +115,7 @@ def test_of_two_falling_parts_of_one_length_the_finer_gives_the_order():
         ([1e-2, 1e-4, 1e-6, 1e-6], Verdict.LEVELS, 3),
         ([1e-6, 1e-5, 1e-4, 1e-3], Verdict.GROWS, 0),
         ([1e-2, 1e-4, 1e-6, 1e-3], Verdict.ERRATIC, 3),
-        # An error reaches rounding by chance, and then grows to more than a hundred times rounding, or does not.
+        # An error is below rounding by chance, and then rises to more or less than a hundred times rounding.
         ([1e-3, 1e-13, 1e-9, 1.01e-9], Verdict.LEVELS, 2),
         ([1e-3, 1e-13, 1e-10, 0.99e-9], Verdict.ROUNDING, 0),
     ],
@@ -141,7 +141,7 @@ def test_measured_cells_give_the_order_and_the_plateau_that_the_engine_was_made_
     assert angle["fourth"].order == pytest.approx(4, abs=1e-3)
     assert angle["soft"].verdict is Verdict.PLATEAU
     assert angle["soft"].plateau == pytest.approx(1e-5, rel=1e-3)
-    outcomes = {row.variant: row.outcome for row in judged(rows)}  # of the finest step
+    outcomes = {row.variant: row.outcome for row in judged(rows)}
     assert outcomes == {"first": "converged", "fourth": "converged", "soft": "plateau"}
 
 
@@ -172,11 +172,11 @@ def judgements(*errors: float, quantity: str = "angle") -> list[str]:
 
 def test_a_sweep_judges_its_rows():
     assert judgements(1e-2, 1e-4, 1e-6) == ["converged"] * 3
-    assert judgements(1e-2, 1e-4) == ["finished"] * 2  # nothing to check a slope by
+    assert judgements(1e-2, 1e-4) == ["finished"] * 2  # two points do not confirm a slope
     assert judgements(1e-2, 1e-12) == ["converged"] * 2
-    # Only those near the plateau are on it.
+    # Only rows with errors near the plateau have the outcome "plateau".
     assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, 1e-5) == ["finished", "finished", "plateau", "plateau", "plateau"]
-    assert judgements(1e-2, 1e-4, 1e-6, 1e-6) == ["finished"] * 4  # it may be a crossing of signs
+    assert judgements(1e-2, 1e-4, 1e-6, 1e-6) == ["finished"] * 4  # the error may have changed its sign
     assert judgements(1e-6, 1e-5, 1e-4) == ["finished"] * 3
     assert judgements(1e-2, 1e-4, 1e-6, quantity="position") == ["converged"] * 3
     assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, 1e-5, quantity="position") == ["finished"] * 2 + ["plateau"] * 3
@@ -215,7 +215,7 @@ def test_a_habit_of_one_engines_users_is_no_step_of_another_engine_that_has_its_
 
 
 def test_a_step_that_the_sweep_has_is_not_run_twice_and_one_that_it_left_out_for_its_cost_is_not_run():
-    # Samples 1e-2 s apart: ten steps between them are 1 ms, which the sweep has.
+    # Samples are 1e-2 s apart, so the sweep has the step 1 ms.
     cells = usual_cells((Disc(),), (Toy("default"),))
     assert [(cell.every, cell.samples) for cell in cells if is_step(cell.step, 1e-3)] == []
     assert [round(cell.step, 6) for cell in cells] == [0.016667, 0.002]

@@ -1,4 +1,4 @@
-"""Tables, CSV files and columns of engines from rows by hand, each with another number in every field.
+"""Tests of tables, CSV files and columns of engines; each field of each row has a different number.
 
 The printed tables are in tests/golden/tables.md; comments beside the rows state what the tables must show.
 """
@@ -46,7 +46,7 @@ from tests.rows import falling, row, row_of, table
 from tests.toys import Disc, Plain, Toy
 
 NAN = math.nan
-# Steps of the rows that `falling` makes, in place of those that people use.
+# Steps of the rows from `falling`, instead of the steps that people use.
 STEPS = {"coarse": 1e-1, "usual": 1e-2, "fine": 1e-3}
 POWER = (1e-2, 1e-4, 1e-6)
 VARIANTS = ("default", "tuned", "extended")
@@ -98,15 +98,15 @@ def tuned(step: float, **changes):
 
 
 def at_steps() -> Iterator[list[Measurement]]:
-    """Sets of rows of MuJoCo's documented settings, with different contents of the cell in the table at equal step."""
+    """Sets of rows of MuJoCo's documented settings; each set gives a different cell in the table at equal step."""
     yield falling("mujoco tuned", POWER)
     yield falling("mujoco tuned", (1e-2, 1e-13))  # falls to rounding
     yield falling("mujoco tuned", (1e-2, 3e-5, 2e-5, 2e-5))
-    yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # Levels off.
-    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # Least at 1 ms.
-    # Two errors cancel at the second step, so the cell has the plateau and the remark that less is luck.
+    yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # the errors level off
+    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # the least error is at 1 ms
+    # Two errors cancel at the second step, so the cell has the plateau and a remark on this step.
     yield falling("mujoco tuned", (1e-2, 1e-4, 1e-3, 1.1e-3, 1.11e-3))
-    # Here they cancel at a step that is not in the cell, so there is no remark.
+    # Two errors cancel at a step that is not in the cell, so there is no remark.
     yield falling("mujoco tuned", (1e-2, 2e-3, 1.6e-3, 1e-5, 1.4e-3, 1.5e-3, 1.5e-3))
     # A row with the purpose "usual" does not change the order.
     yield [*falling("mujoco tuned", POWER), tuned(1e-4, angle=0.3, purpose="usual")]
@@ -236,7 +236,7 @@ def test_two_rows_for_one_cell_are_refused():
 
 @pytest.fixture
 def other_versions(monkeypatch):
-    """A `monkeypatch` with which a test can change the cached versions."""
+    """`monkeypatch`, with the caches of versions cleared before and after the test."""
     provenance._version.cache_clear()
     yield monkeypatch
     provenance._version.cache_clear()
@@ -316,7 +316,7 @@ def test_a_naive_method_is_never_printed_under_a_usual_name():
 
 
 def test_an_error_within_a_cpu_time_counts_only_if_no_smaller_step_exceeds_it():
-    rows = falling("mujoco tuned", (1e-2, 1e-5, 1e-3, 1e-6))  # with CPU times of 1, 10, 100 and 1000 ms
+    rows = falling("mujoco tuned", (1e-2, 1e-5, 1e-3, 1e-6))
     for cost, error in ((0.1, 1e-3), (0.01, 1e-3), (0.001, 1e-2), (0.0009, math.inf), (9.0, 1e-6)):
         assert engine_tables.error_within(rows, "angle", cost) == error
     torn = [*rows[:3], replace(rows[3], outcome=Outcome.TORN)]
@@ -325,7 +325,7 @@ def test_an_error_within_a_cpu_time_counts_only_if_no_smaller_step_exceeds_it():
 
 def test_the_least_error_falls_as_the_cpu_time_increases():
     rough = falling("mujoco extended", (1e-2, 1e-5, 1e-7))
-    rough[0] = replace(rough[0], cpu=0.05)  # more than at the next smaller step
+    rough[0] = replace(rough[0], cpu=0.05)  # the cost is more than at the next smaller step
     points = engine_tables.error_by_cost([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
     assert points == sorted(points)
     assert [error for _, error in points] == sorted((error for _, error in points), reverse=True)

@@ -1,4 +1,5 @@
-"""Every number of every scene, made wrong in an engine alone, is noticed by the grid's gates, or it is said why not."""
+"""The gates of the grid detect a wrong number in an engine's model, for each number of each scene, or a reason is
+given."""
 
 from __future__ import annotations
 
@@ -23,18 +24,18 @@ from tests.wrong.mistakes import NUMBER_KINDS, Mistake, MistakeTrial, Sighting, 
 # Relative mistakes that have to be noticed: 1e-4 by methods that reach rounding, 1e-2 with documented settings.
 EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
 OTHERS: dict[Engine, float] = {Lagrange("rk4", "projection"): 1e-4, pymunk.TUNED: 1e-2, mujoco.TUNED: 1e-2}
-# No run of a wrong model is estimated to step longer than this [s]; the coarsest step is always tried. The control,
-# which is interpreted, needs more.
+# Limit of the estimated CPU time of a run of a wrong model [s]; the coarsest step is always tried. The exact solver has
+# a higher limit, since it is interpreted.
 LIMIT, CONTROL_LIMIT = 0.15, 1.3
 
-# What changes an error by less than this part of the mistake changes nothing: forces are differences of velocities over
-# a step, which leaves about 1e-7 of rounding in them where the mistake is 1e-4.
+# A mistake has no effect if it changes an error by less than this fraction of the mistake. Forces are differences of
+# velocities over a step, so their rounding error is about 1e-7; the smallest mistake is 1e-4.
 NOTHING = 0.01
 
 # Scenes that are too long for every mistake, or in which right models fail before their end [s].
 DURATIONS = {
-    "point_pendulum": 2.0,  # The grid's own steps lose the phase over its 2000 s.
-    "n_four_bar_2": 0.3,  # Before the first singular position, where right models go apart.
+    "point_pendulum": 2.0,  # With the steps of the grid, the phase is lost before the end at 2000 s.
+    "n_four_bar_2": 0.3,  # This ends before the first singular position, where right models diverge from each other.
     "n_four_bar_10": 0.3,
     "n_four_bar_40": 0.2,
     "pendulum_10": 1.0,
@@ -59,7 +60,7 @@ NO_TORQUE = (
 )
 PRESCRIBED = "pymunk moves this body as prescribed and has no number for its mass"
 
-# (scene, mistake) -> the symmetry by which nothing changes.
+# (scene, mistake) -> the reason why this mistake has no effect.
 UNNOTICEABLE: dict[tuple[str, str], str] = {
     ("driven_four_bar", "inertia crank"): STEADY,
     ("driven_slider_crank", "inertia crank"): STEADY,
@@ -77,7 +78,7 @@ UNNOTICEABLE: dict[tuple[str, str], str] = {
     ("cart", "point axle second_point y"): ALONG_THE_AXLE,
     **{("cart", f"point {side} caster's wheel second_point y"): ALONG_THE_AXLE for side in ("left", "right")},
 }
-# Mistakes that one engine alone does not show: (scene, engine, mistake).
+# (scene, engine, mistake) -> the reason why this mistake has no effect in this engine.
 UNNOTICEABLE_IN: dict[tuple[str, str, str], str] = {
     ("driven_four_bar", "pymunk", "mass crank"): PRESCRIBED,
     ("driven_slider_crank", "pymunk", "mass crank"): PRESCRIBED,
@@ -90,13 +91,13 @@ UNNOTICEABLE_IN: dict[tuple[str, str, str], str] = {
     ("free_slider_crank", "lagrange", "point guide second_point x"): NO_TORQUE,
 }
 
-# (scene, method) -> why some mistakes of this size stay below what theory allows the method. The gate of change notices
-# them: with the same versions every error is the same to rounding.
+# Reasons why the bounds from theory do not detect some mistakes. The comparison with the baseline detects them, since
+# with the same versions each error changes by rounding only.
 FORCES = "the mistake shows in forces alone, and in a part of them that is smaller than what theory allows this order"
 COARSE = "of first order: at the finest step that is run its own error is as large as what the mistake makes"
 POLYGON = "a body that is not round is a polygon here, and its blows are larger than what the mistake makes"
 PRESSED = "pins already hold the gears apart: how hard they press is a matter of softness, of which nothing is promised"
-# Some of them don't change the digits that are compared.
+# Some mistakes with this reason do not change the compared digits either.
 SWEPT = "its sweeps do not converge on so many joints, so that its own error is larger than what the mistake makes"
 
 LARGER: dict[tuple[str, str], str] = {
@@ -113,25 +114,25 @@ LARGER: dict[tuple[str, str], str] = {
 
 @dataclass(frozen=True)
 class SampledPointPendulum(PointPendulum):
-    """The point pendulum at the samples of other scenes: its own are half a second apart."""
+    """The point pendulum with the sampling of the bar pendulum, since its usual samples are half a second apart."""
 
     samples = BarPendulum.samples  # pyright: ignore[reportIncompatibleMethodOverride, reportAssignmentType]
 
 
 def short(scene: Scene) -> Scene:
-    """The scene, made short where DURATIONS says so."""
+    """The scene with its duration in DURATIONS, if there is one."""
     duration = DURATIONS.get(scene.name)
     if duration is None:
         return scene
     if isinstance(scene, PointPendulum):
         scene = SampledPointPendulum()
-    # A rolling body's horizon is worked out, that of others is a number.
+    # Scenes of rolling bodies compute their horizon; other scenes have it as a field.
     horizon_field = {"horizon": min(duration, scene.horizon)} if "horizon" in scene.__dataclass_fields__ else {}  # pyright: ignore[reportAttributeAccessIssue]
     return replace(cast(Any, scene), duration=duration, **horizon_field)
 
 
 def excuse(scene: Scene, engine: Engine, mistake: Mistake) -> str:
-    """Why a mistake changes nothing; "" where it has to be noticed."""
+    """The reason why a mistake has no effect; "" if it must be detected."""
     expected = UNNOTICEABLE.get((scene.name, str(mistake)), "")
     return expected or UNNOTICEABLE_IN.get((scene.name, engine.name, str(mistake)), "")
 
@@ -162,8 +163,8 @@ def whole(engines: Mapping[Engine, float]) -> list[MistakeTrial]:
 
 
 def representative(trials: Iterable[MistakeTrial], each: int = 2) -> list[MistakeTrial]:
-    """Of every trial the last mistake of `each` kinds that have to be noticed, those kinds that its engine met least
-    often in the trials before. The slow test makes all mistakes, and those too of which nothing can be noticed."""
+    """The trials with `each` mistakes only, each of a different kind. Mistakes with an excuse are left out, and kinds
+    that are rare in the engine's earlier trials are preferred."""
     met: dict[str, Counter[str]] = {}
     out = []
     for trial in trials:
@@ -175,22 +176,22 @@ def representative(trials: Iterable[MistakeTrial], each: int = 2) -> list[Mistak
     return out
 
 
-# Scenes whose kinds of joints and numbers others have too, at less cost: these the slow test alone looks at.
+# Slow scenes that only the slow test runs, since faster scenes have the same kinds of joints and numbers.
 LONGER = ("spinning_four_bar", "pendulum_100", "n_four_bar_40", "andrews", "rolling_in_ring")
 
 _shorter = [trial for trial in whole(EXTENDED) if trial.scene.name not in LONGER]
-# In turn by the one engine and by the other.
+# Scenes alternate between the two engines.
 REPRESENTATIVE = representative(trial for number, trial in enumerate(_shorter) if number % 4 in (0, 3))
 EVERYTHING = whole({**EXTENDED, **OTHERS})
 Findings = Mapping[tuple[str, str], Mapping[Mistake, Sighting] | Loss]
 
 
 def found(trials: Iterable[MistakeTrial]) -> Findings:
-    """The noticed mistakes by scene and method, from supervised processes."""
+    """The effects of the mistakes by scene and method, computed in supervised processes."""
     by_scene: dict[str, list[MistakeTrial]] = {}
     for trial in trials:
         by_scene.setdefault(trial.scene.name, []).append(trial)
-    # s: two engines' hundred bodies in some forty runs each, on a loaded machine.
+    # The limit [s] allows forty runs of a hundred bodies with each of two engines on a loaded machine.
     reported = supervise(noticed, map(tuple, by_scene.values()), limit=600.0, workers=worker_count())
     return {
         (trial.scene.name, trial.method): result if isinstance(result, Loss) else result[index]
@@ -216,7 +217,7 @@ def named(trials: Iterable[MistakeTrial]) -> list:
 
 
 def unseen(trial: MistakeTrial, findings: Findings) -> list[str]:
-    """The mistakes that no check of theory notices; asserts that those excused change nothing, and others something."""
+    """The mistakes that no bound from theory detects. Asserts that a mistake has an effect unless it is excused."""
     result = findings[trial.scene.name, trial.method]
     assert not isinstance(result, Loss), result
     out = []
@@ -224,7 +225,7 @@ def unseen(trial: MistakeTrial, findings: Findings) -> list[str]:
         if excuse(trial.scene, trial.engine, mistake):
             assert sighting.shift < NOTHING * trial.relative, f"{mistake} changes an error by {sighting.shift:.1g}"
             continue
-        # Whatever theory says, the gate of change sees it, though it gives rounding its room.
+        # The comparison with the baseline must detect the mistake even if the bounds from theory do not.
         drowned = LARGER.get((trial.scene.name, trial.method)) == SWEPT
         assert sighting.changed or drowned, f"{mistake} changes nothing, so it needs a reason of its own"
         if not sighting.check:
@@ -234,7 +235,7 @@ def unseen(trial: MistakeTrial, findings: Findings) -> list[str]:
 
 @pytest.mark.parametrize("trial", named(REPRESENTATIVE))
 def test_a_number_that_is_wrong_in_an_engine_alone_is_noticed(findings: Findings, trial: MistakeTrial) -> None:
-    """Two of a scene, in scenes that cost little: the slow test below makes them all, in all scenes and methods."""
+    """This test makes two mistakes in each fast scene; the slow test makes all mistakes in all scenes."""
     assert not unseen(trial, findings) or (trial.scene.name, trial.method) in LARGER
 
 
