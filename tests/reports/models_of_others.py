@@ -1,4 +1,4 @@
-"""Reads models of other authors: the size of the mechanism, or the reason of a refusal.
+"""Reads models of other authors, and lists the number of bodies of each, or the reason why it is refused.
 
 `python -m tests.reports.models_of_others` writes the table of the page `your_model`. It downloads two packages with pip
 into a temporary folder, and runs pymunk's examples without their windows.
@@ -70,7 +70,7 @@ except BaseException as reason:
 
 @dataclass(frozen=True)
 class Found:
-    """The result of a model: its number of `bodies` and the elements to be switched off, or the reason of a refusal."""
+    """One line of the table. `without`: elements that were switched off. `reason`: why the model is refused, or ""."""
 
     source: str
     model: str
@@ -80,7 +80,8 @@ class Found:
 
 
 def tried(reading) -> list[str]:
-    """Read a model, and switch off the elements that refusals name; `reading`(without) gives a Reading."""
+    """[bodies, without, reason] of a model. If a refusal advises an option `--without`, the model is read again with
+    it."""
     without: list[str] = []
     while True:
         try:
@@ -98,7 +99,7 @@ def tried(reading) -> list[str]:
 
 
 def spaces() -> Iterator[Found]:
-    """The spaces of pymunk's examples that step without a window."""
+    """The lines of pymunk's examples, which are run without a window."""
     for path in sorted(EXAMPLES.glob("*.py")):
         if path.name.startswith("_"):
             continue
@@ -128,7 +129,7 @@ def unpacked(folder: Path) -> bool:
 
 
 def models(folder: Path) -> Iterator[Found]:
-    """The models in MuJoCo's package, and in the packages that `unpacked` has written."""
+    """The lines of the models in MuJoCo's package, and in the packages in `folder`."""
     places = {
         "mujoco": Path(mujoco.__file__).parent / "testdata",
         "gymnasium": folder / "gymnasium/gymnasium/envs/mujoco/assets",

@@ -21,7 +21,7 @@ from tests.toys import Toy
 
 
 class NeedsTwo(Exception):
-    """An error that can be pickled but not unpickled: its arguments are not those of its constructor."""
+    """An error that can be pickled but not unpickled, since its constructor has two arguments."""
 
     def __init__(self, first: int, second: int) -> None:
         super().__init__(f"{first} and {second}")
@@ -41,7 +41,7 @@ class Unreadable:
 
 @dataclass(frozen=True)
 class RoughToy(Toy):
-    """An engine whose steps do the action named by its variant; some actions write a file into `folder`."""
+    """An engine that does the action named by its variant in each run; some actions write a file into `folder`."""
 
     folder: str = ""
 
@@ -81,7 +81,7 @@ ACTIONS: dict[str, Callable[[RoughToy], Any]] = {
     "kill once": lambda toy: kill_self(signal.SIGKILL) if toy.is_first_call() else None,
     "sleep": lambda toy: time.sleep(1000),
     "spin": lambda toy: [None for _ in iter(int, 1)],
-    # Both hold the interpreter: no other thread of the process runs.
+    # Both native actions hold the interpreter lock, so no other thread of the process runs.
     "native spin": lambda toy: re.match(r"(a|a)*$", "a" * 60 + "b"),
     "native sleep": lambda toy: ctypes.PyDLL(None).sleep(1000),
     "held sleep": lambda toy: toy.hold("sleep"),
@@ -135,7 +135,7 @@ def is_free(file: Any) -> bool:
 
 
 def wait_until(is_true: Callable[[], bool]) -> None:
-    """Wait for a condition; AssertionError after a time that is long even for a loaded machine."""
+    """Wait for a condition. Raises AssertionError after 300 s, which is long even for a loaded machine."""
     end = time.monotonic() + 300.0
     while not is_true():
         assert time.monotonic() < end, "it did not come true"
@@ -143,13 +143,13 @@ def wait_until(is_true: Callable[[], bool]) -> None:
 
 
 def fork_server() -> int | None:
-    """The process id of multiprocessing's fork server, for which there is no public name."""
+    """The process id of multiprocessing's fork server, from a private attribute."""
     server: Any = forkserver._forkserver
     return server._forkserver_pid
 
 
 def end_the_supervisor(item: Any) -> str:
-    """End the process that supervises this one, for a cell with more than 900 steps a sample."""
+    """Kill the supervising process if a cell has more than 900 steps between samples."""
     if item.every > 900:
         parent = multiprocessing.parent_process()
         assert parent is not None

@@ -1,4 +1,5 @@
-"""Fixtures of a site in Chromium, and its engines in the page and in Python; `tests/tools/browser.sh` installs all."""
+"""Fixtures with a site in Chromium, and functions that run its engines in the page and in Python;
+`tests/tools/browser.sh` installs all."""
 
 from __future__ import annotations
 
@@ -30,13 +31,13 @@ PHONE = {"width": 390, "height": 844}
 TALL = {"width": 1200, "height": 8000}  # Without scrolling, the picture does not switch to another experiment.
 LONGEST = 300_000.0  # Timeout [ms], long enough for a loaded machine.
 
-# The slow tests use the other lessons too.
+# Other lessons are used by slow tests only.
 QUICK = ("four_bar", "skate", "rolling")
 
 
 @pytest.fixture(scope="module")
 def files(request):
-    """The site with the quick lessons and those of the selected tests."""
+    """The site with the lessons in QUICK and with the lessons of the selected tests."""
     parameters = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
     wanted = {*QUICK, *(call.params.get("lesson") for call in parameters if call is not None)}
     answers = {motion: answered(motion) for motion in tasks(LESSONS[:1])}
@@ -123,7 +124,7 @@ def running(chromium, address, files):
 BY_NAME = {lesson.name: lesson for lesson in LESSONS}
 
 
-# Runs the engines of the page; `places`: indices of some controls, `start`: the pose of release.
+# JavaScript that runs the engines of the page. `places`: indices of controls. `start`: initial pose, or null.
 RUN_ENGINES = """async ([scene, places, start]) => {
   const { ask, form } = window.crosscheck;
   form.move(scene, places);

@@ -58,14 +58,14 @@ def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range():
 
 
 def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
-    # The squared frequencies of two equal bars are (3 +- 6/sqrt(7)) g/l, that of one bar is 3/2 g/l.
+    # The squared frequency of one bar is 3/2 g/l. Two equal bars have the squared frequencies (3 +- 6/sqrt(7)) g/l.
     assert subjects.stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
     two = LinkPendulum(links=2, length=0.7)
     assert subjects.stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
     scene = subjects.near_the_largest_offset(1e-3)
     angles = np.linspace(0, 2 * math.pi, 200_001)
     assert subjects.rod_rate(scene) == pytest.approx(np.abs(scene.shape.rates(angles)[0]).max() * scene.rate, rel=1e-3)
-    # An ellipse oscillates with omega^2 = m g (a^2/b - b) / (I + m b^2), since its centre is below that of curvature.
+    # An ellipse with semi-axes a > b oscillates about its flat side with omega^2 = m g (a^2/b - b) / (I + m b^2).
     a, b = 0.5, 0.1
     inertia = (a**2 + b**2) / 4
     assert subjects.rocking(subjects.ellipse(b / a)) == pytest.approx(
@@ -75,7 +75,7 @@ def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
 
 @dataclass
 class Soft:
-    """An engine with a regularisation. With `tied`, `stiffness` is that at a step of 1 s; it rises as 1/dt^2."""
+    """An engine with a regularisation. With `tied`, its stiffness is `stiffness` / dt^2."""
 
     stiffness: float
     compliance: float = 0.1
@@ -88,7 +88,7 @@ class Soft:
 
 
 def test_at_the_tearing_step_the_weight_opens_the_joint_by_the_bound():
-    """The disc turns about its centre, so the pin carries only the weight: its acceleration is 10 m/s^2."""
+    """The disc turns about its centre, so the pin carries only the weight. Gravity is 10 m/s^2."""
     scene, mechanism = Disc(), Disc().mechanism()
     limit = 10 * 0.1 / (TORN * mechanism.length_scale)
 
@@ -103,7 +103,7 @@ def test_at_the_tearing_step_the_weight_opens_the_joint_by_the_bound():
 
 
 def test_without_the_velocity_term_the_centripetal_acceleration_determines_the_tearing_step():
-    """A bar turns about its pin. Without gravity the acceleration of its middle is rate^2 l/2, the velocity term."""
+    """A bar turns about its pin without gravity, so the velocity term is the acceleration of its middle, rate^2 l/2."""
     scene = BarPendulum(gravity=1e-9, angle=0.0, rate=2.0, duration=1.0)
     mechanism = scene.mechanism()
     limit = scene.rate**2 * scene.length / 2 / (TORN * mechanism.length_scale)
@@ -113,7 +113,7 @@ def test_without_the_velocity_term_the_centripetal_acceleration_determines_the_t
 
 
 def drawn_of(outcomes: str, stride: int) -> tuple[str, str]:
-    """(stored letters of a column with these outcomes, letters that are drawn)."""
+    """The letters that are stored for a column with these outcomes, and the letters that are drawn."""
     column = MapColumn(TOYS, 1.0, Disc(), Toy(), tuple((10, every) for every in range(1, len(outcomes) + 1)))
     run = lambda cells: {cell: SimpleNamespace(outcome=outcomes[cell.every - 1]) for cell in cells}  # noqa: E731
     rows: Any = map_columns.run_columns([column], run, stride)[0]  # type: ignore[arg-type]
@@ -181,7 +181,7 @@ def test_at_the_largest_step_and_below_all_errors_are_within_the_bound():
     assert page.largest_step([line(1.0, "·S··"), line(2.0, "TTS·")], inf) == "12 ms"
     assert page.largest_step([line(1.0, "·S··")], inf) == "25 ms"
     assert page.largest_step([line(1.0, "···T")], inf) == "-"
-    # The errors are 0.1 and 0.01 rad, that of a step that was not run, which counts as 0.01 rad, and 0.001 rad.
+    # The errors are 0.1, 0.01, unknown and 0.001 rad. The step that was not run counts with the error 0.01 rad.
     falling_line = replace(line(1.0, "··=·"), errors=(-1.0, -2.0, float("nan"), -3.0))
     largest = [page.largest_step([falling_line], bound) for bound in (inf, 0.011, 0.01, 1e-4)]
     assert largest == ["100 ms", "50 ms", "12 ms", "-"]

@@ -29,7 +29,8 @@ def test_the_time_of_a_grid_is_counted_once_by_part_by_method_and_by_scene():
 def test_the_timed_runs_of_the_judge_are_accurate_and_need_numba(monkeypatch):
     if loading.installed():
         errors = [value for name, value, _ in measure_judge(links=(3,), turns=1) if name.endswith("its error")]
-        # Bounds: order 4 with a step of 1e-3 s; order 8 with 5e-3 s and 1e-2 s; an adaptive step.
+        # The errors are those of order 4 with the step 1e-3 s, of order 8 with 5e-3 s and 1e-2 s, and of adaptive
+        # steps.
         assert errors[0] < 1e-6
         assert errors[1] < 1e-9
         assert errors[2] < errors[1] / 20

@@ -1,4 +1,5 @@
-"""Charts and drawings, read back from their axes. Those of invented rows are compared with tests/golden/charts.md."""
+"""Tests of charts and drawings by the contents of their axes. Charts of invented rows are compared with
+tests/golden/charts.md."""
 
 from __future__ import annotations
 
@@ -37,11 +38,11 @@ def points(line: Line2D) -> list[tuple[float, float]]:
 
 
 ROLES = {to_hex(getattr(LIGHT, field.name)): field.name for field in fields(LIGHT)}
-GUIDE = 0.8  # line width of guides, whose position depends on the limits of the axes
+GUIDE = 0.8  # guides are left out, since their position depends on the limits of the axes
 
 
 def described(figure: Figure) -> Iterator[str]:
-    """The titles, scales, lines, texts and legend of each panel; colours have the names of their roles."""
+    """Yield lines of text that describe the contents of each panel; colours have the names of their roles."""
     for panel in figure.axes:
         if not panel.get_visible():
             continue
@@ -58,7 +59,7 @@ def described(figure: Figure) -> Iterator[str]:
                 numbers = " ".join(f"({round(x, 12):.4g}, {round(y, 12):.4g})" for x, y in points(line))
                 yield f"- {look_of(line)} {line.get_drawstyle()}: {numbers}"
         for text in panel.texts:
-            at = () if text.get_text().isdigit() else getattr(text, "xy", ())  # a digit is the number of a guide
+            at = () if text.get_text().isdigit() else getattr(text, "xy", ())  # a text of digits belongs to a guide
             yield f"- {text.get_text()!r} {at}"
     for legend in figure.legends:
         lines = [handle for handle in legend.legend_handles if isinstance(handle, Line2D)]
@@ -174,12 +175,12 @@ def has(panel: Axes, wanted: Any) -> bool:
 def test_the_points_of_a_body_are_its_joints_at_its_pose():
     mechanism = four_bar()
     result = outlines.body_points(mechanism, mechanism.pose)
-    # A = (0, 0), B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0).
+    # The joints are at A = (0, 0), B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0).
     assert result["crank"] == pytest.approx(np.array([[0.0, 0.0], [0.0, 0.4]]), abs=1e-12)
     assert result["coupler"] == pytest.approx(np.array([[0.0, 0.4], [0.4, 0.8]]), abs=1e-12)
     assert result["rocker"] == pytest.approx(np.array([[0.4, 0.8], [1.2, 0.0]]), abs=1e-12)
     assert outlines.ground_points(mechanism) == pytest.approx(np.array([[0.0, 0.0], [1.2, 0.0]]))
-    # A slot in the ground constrains to a line, so its point is not drawn as a support.
+    # The point of a slot in the ground is not drawn as a support.
     crank = DrivenSliderCrank(offset=0.1).mechanism()
     assert any(isinstance(joint, Slot) and joint.first is None for joint in crank.joints)
     assert outlines.ground_points(crank) == pytest.approx(np.zeros((1, 2)))
@@ -200,9 +201,9 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
         assert has(panel, [space[index]])
         c, s = math.cos(theta[index]), math.sin(theta[index])
         assert has(panel, body_curve @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
-        assert has(panel, [[0.0, 0.0], space[index]])  # the crank's line, extended to the centre
+        assert has(panel, [[0.0, 0.0], space[index]])  # the line of the crank ends at the instant centre
     run, total = (np.array(points(line)) for line in draw_rate(curves).axes[0].get_lines())
-    # The centre moves by one radius per radian; except near the ends, splines reproduce this within 1e-6.
+    # The instant centre moves by 0.5 m per radian. Splines reproduce this within 1e-6, except near the ends.
     assert run[5:-5] == pytest.approx(np.column_stack([np.degrees(theta), np.full(41, 0.5)])[5:-5], abs=1e-6)
     assert total[:, 1] == pytest.approx(1 / (curves.space_curvature + curves.body_curvature))
     [missed] = draw_rate(replace(curves, body=2 * body_curve)).axes[1].get_lines()
@@ -225,7 +226,7 @@ def test_the_band_ends_at_rounding_and_guides_have_their_slopes():
 
 
 def test_an_outline_is_sorted_along_the_body_and_a_strip_has_equally_spaced_times():
-    mechanism = pendulum(angle=math.pi / 2)  # its bar of 1 m points upwards from the origin
+    mechanism = pendulum(angle=math.pi / 2)  # the bar of 1 m points upwards from the origin
     result = drawings.outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
     assert result == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
     strip = drawings.Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5)

@@ -65,7 +65,7 @@ def found_in(folder, text, name="model.xml", word="model.xml", duration=0.4, tol
 
 @pytest.fixture(scope="module")
 def shipped(tmp_path_factory):
-    """The check of the four-bar with MuJoCo's default settings, which several tests use."""
+    """The result of a check of the four-bar with MuJoCo's default settings."""
     return found_in(tmp_path_factory.mktemp("shipped"), FOUR_BAR)
 
 
@@ -106,7 +106,7 @@ def test_the_lines_for_a_urdf_file_are_in_a_mujoco_element_and_can_be_pasted(tmp
     assert line.startswith("<mujoco><option ")
     again = found_in(tmp_path, text.replace("</robot>", f"{line}</robot>"), "chain.urdf", "chain.urdf", tolerance=1e-6)
     assert again.met
-    # MuJoCo refuses a second element of this kind, so that only the option is printed if the file has one.
+    # MuJoCo refuses a second element <mujoco>, so only the option is printed if the file has this element.
     assert again.table[0].change.lines[0].startswith("<option ")
 
 
@@ -117,7 +117,7 @@ CLASSES = '<default><default class="own"><joint damping="0"/></default></default
     ("place", "words"), [("", 'solref="0.04 1"'), (CLASSES, 'class="own"')], ids=["values of its own", "of a class"]
 )
 def test_an_equality_that_a_default_does_not_reach_is_named_in_the_advice(tmp_path, place, words):
-    """A default class that is read before the advised lines keeps its own values, so the model would remain soft."""
+    """If a default class is defined before the advised lines, its values apply, so the model would remain soft."""
     model_text = FOUR_BAR.replace("<worldbody>", place or "<worldbody>", 1).replace("<connect", f"<connect {words}")
     lines = answer_section(found_in(tmp_path, model_text)).code
     assert "an equality of a class, or with its own values, needs these values there" in lines[-1]
@@ -131,7 +131,8 @@ def test_an_equality_that_a_default_does_not_reach_is_named_in_the_advice(tmp_pa
 def test_a_driven_pymunk_linkage_is_compared_in_all_forces_except_those_of_the_crank(tmp_path):
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
     result = found_in(tmp_path, script(PYMUNK, scene.mechanism(), 1e-3), "made.py", "made.py:make", step=1e-3)
-    # The error is of first order, about the step times a rate of 10 rad/s. The forces of the crank are unknown.
+    # The relative error of the forces is about the step times the rate of 10 rad/s. The forces of the crank are
+    # unknown.
     assert 0 < result.own_errors.worst["reaction"] < 0.1
     assert (
         "motion",
@@ -143,7 +144,7 @@ def test_a_driven_pymunk_linkage_is_compared_in_all_forces_except_those_of_the_c
 def test_a_mujoco_crank_with_a_huge_armature_is_read_as_a_prescribed_rate(tmp_path):
     scene = next(scene for scene in SCENES if scene.name == "driven_four_bar")
     result = found_in(tmp_path, TUNED.text(scene.mechanism(), 1e-3))
-    # The file's bodies are parallel to the world at the start, so angles are measured from there.
+    # In the file all angles are zero at the start, so changes of angles are compared.
     truth, judge = scene.motion(result.own.t).pose, result.judge.trajectory.pose
     assert np.abs((judge - judge[0]) - (truth - truth[0])).max() < 1e-10
     assert result.met
@@ -193,7 +194,7 @@ def test_freedoms_modes_and_singular_positions_are_reported():
     assert facts.freedoms == (1, 1)
     assert facts.redundant == 0
     assert facts.singular == ()
-    # The parallelogram is flat at the start, where its rows have one more dependence than at other poses.
+    # The parallelogram is flat at the start, and in this pose its rows are dependent.
     line = FOUR_BAR.replace("0 0 0 0 0 0.3", "0 0 0 .3 0 0").replace('pos="0 0 0.3"', 'pos=".3 0 0"')
     line = line.replace("0 0 0 0.8 0 0.3", "0 0 0 .7 0 0").replace("0 0 0 0.1 0 0.6", "0 0 0 .3 0 0")
     line = line.replace('anchor="0.8 0 0.3"', 'anchor=".7 0 0"')
@@ -203,7 +204,8 @@ def test_freedoms_modes_and_singular_positions_are_reported():
     assert rows - independent == 1
 
 
-@pytest.mark.parametrize(("damping", "rate"), [(0.0, 10.0), (80.0, 20.0 + 300.0**0.5)])  # x'' = -d/2 x' - 100 x
+# the equation is x'' = -d/2 x' - 100 x
+@pytest.mark.parametrize(("damping", "rate"), [(0.0, 10.0), (80.0, 20.0 + 300.0**0.5)])
 def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
     text = (
         '<mujoco><option gravity="0 0 0"/><worldbody><body><joint type="slide" axis="1 0 0" stiffness="200" '
@@ -220,14 +222,14 @@ def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
 def test_exponential_growth_of_a_disturbance_ends_the_horizon_and_linear_growth_does_not():
     regular = reference_motion(PENDULUM_1.mechanism(), 200, 0.01)
     assert regular.horizon == regular.trajectory.t[-1]
-    # After 3,000 radians an initial error of the rate has grown by this factor, and the allowed error too.
+    # After 3,000 radians an initial error of the rate has grown by a factor of more than 500, but only linearly.
     spinning = reference_motion(Disc(rate=1000.0).mechanism(), 300, 0.01)
     assert spinning.growth[-1] > 500
     assert spinning.horizon == pytest.approx(3.0, rel=1e-12)
     links = PENDULUM_2.mechanism()
     wild = replace(links, bodies=tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in links.bodies))
     chaotic, expected = reference_motion(wild, 1000, 0.015), reference_motion(wild, 1000, 0.015, tolerance=1e-10)
-    # The motion is regular for a few time scales of the mechanism, which is 0.3 s.
+    # The time scale of the mechanism is 0.3 s; the motion is regular for a few time scales.
     t = chaotic.trajectory.t
     assert 1.0 < chaotic.horizon < t[-1]
     is_before_horizon = t < chaotic.horizon
@@ -251,14 +253,14 @@ def test_the_report_is_rendered_as_text_html_and_markdown(shipped):
     assert len(screen) <= 30
     assert max(map(len, screen)) <= 120
     page = rendering.html("four bar", reported)
-    # As inline SVG, the second picture would be clipped by the frame of the first one.
+    # Pictures are not inline SVG, since the frame of the first picture would clip the second picture.
     assert page.count("data:image/svg+xml;base64,") == page.count("<img ") == 2
     assert "<svg" not in page
     files = {title: f"{key}.svg" for key, (title, _) in pictures.items()}
     assert "](errors.svg)" in rendering.markdown("four bar", reported, files)
     foreign = rendering.Section("", ("<i>",), (("why", "<i>"),), ("<i>",), header=("<i>",), rows=(("<i>",),))
     assert "<i>" not in rendering.html("<i>", [foreign])
-    assert rendering.markdown("four bar", [foreign], {}).count("<i>") == 1  # in the lines to copy
+    assert rendering.markdown("four bar", [foreign], {}).count("<i>") == 1  # the code block contains it
     numbers = json.loads(json.dumps(check_data(shipped), allow_nan=False))
     assert set(numbers) == set(schema()["$defs"]["MODEL"]["required"])
     for name, setting in (("advised", shipped.advised), ("next_decade", shipped.decade)):

@@ -23,7 +23,7 @@ INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\
 
 
 def checked(folder, word, **terms) -> CheckReport:
-    """The answer of a check in this process over 0.5 s of motion."""
+    """The report of a check over 0.5 s of motion."""
     check = run_check(CheckRequest(word, str(folder), 0.5, **terms))
     assert isinstance(check, CheckReport), check
     return check
@@ -56,7 +56,7 @@ def test_settings_are_inserted_before_the_first_step_of_a_script(tmp_path, text,
     assert result.data["assumed"] == ""
     assert any("stopped before the first step" in note["reason"] for note in result.data["notes"])
     assert result.data["applied"]["error"] == pytest.approx(result.data["advised"]["error"], rel=1e-6)
-    # With a stricter tolerance, the lines in the written file are replaced and not added again.
+    # With a smaller tolerance, the advised lines in the written file are replaced.
     other = checked(tmp_path, word.replace("x.py", "y.py"), tolerance=1e-3, search=True, apply="y.py")
     assert other.data["applied"]["error"] <= 1e-3
     text_before, block = (tmp_path / "y.py").read_text().split(BEGIN)
@@ -66,7 +66,7 @@ def test_settings_are_inserted_before_the_first_step_of_a_script(tmp_path, text,
             [float(part) for part in subprocess.check_output([sys.executable, tmp_path / name]).split()]
             for name in ("x.py", "y.py")
         ]
-        # abs=0.1: ten times the step of x.py, since the error is of first order.
+        # The tolerance 0.1 is ten times the step of x.py, since the error is of first order.
         assert places[1] == pytest.approx(places[0], abs=0.1)
         assert places[1] != places[0]
 
@@ -81,8 +81,8 @@ def test_a_constant_force_on_a_body_acts_in_every_part_of_a_divided_step(tmp_pat
         float(subprocess.check_output([sys.executable, "-c", code], cwd=tmp_path).split()[-1])
         for code in (space, space.replace(" y;", " x as y;"))
     ]
-    # The parts start half a part earlier, so that the speed is larger by a quarter. If the force acted in only one
-    # part, the speed would be three quarters.
+    # The divided step begins half a part earlier, so the speed is larger by a quarter. If the force acted in one part
+    # only, the speed would be smaller by a quarter.
     assert speeds[0] == pytest.approx(speeds[1], rel=0.3)
 
 
@@ -112,10 +112,10 @@ def test_quick_tries_four_settings_and_all_tries_all_with_the_same_causes(tmp_pa
     option_sets = ({"quick": True}, {}, {"everything": True})
     quick, total, every = (checked(tmp_path, "model.xml", tolerance=1e-4, **term).data for term in option_sets)
     assert len(quick["tried"]) == 1 + 4
-    # With the larger tolerance of --quick the declared motion has a relative error of 1e-3.
+    # With --quick the motion with the declared softness is computed with a relative error of 1e-3.
     assert quick["parts"]["softness"] == pytest.approx(total["parts"]["softness"], rel=1e-3)
     assert {setting["words"] for setting in total["tried"]} < {setting["words"] for setting in every["tried"]}
-    # Which of the two is cheaper depends on measured times; both are accurate enough.
+    # The advised settings depend on measured times, but both are accurate enough.
     assert max(data["advised"]["error"] for data in (total, every)) <= 1e-4
     assert total["next_decade"] is not None
     assert quick["error"] == total["error"]
@@ -125,7 +125,7 @@ def test_quick_tries_four_settings_and_all_tries_all_with_the_same_causes(tmp_pa
 def test_the_search_for_settings_ends_at_the_goal_or_with_the_last_documented_setting(tmp_path, monkeypatch):
     monkeypatch.setattr("reports.check.checked.SEARCH_BUDGET", 2.0)
     (tmp_path / "swing.py").write_text(PENDULUM)
-    for goal, result in ((1e-3, True), (1e-9, False)):  # The second goal would need a step of 4 ns.
+    for goal, result in ((1e-3, True), (1e-9, False)):  # The goal 1e-9 would need a step of 4 ns.
         answer = checked(tmp_path, "swing.py:make", tolerance=goal, search=True)
         assert answer.fine == result
         assert (answer.data["advised"] is not None) == result

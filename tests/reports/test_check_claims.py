@@ -1,4 +1,4 @@
-"""The conclusions of `crosscheck check`: advice, parts of the error, facts, and a golden text of the report."""
+"""Tests of the advice, the parts of the error, the facts and the text in the report of `crosscheck check`."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ from tests.reports.test_check import FOUR_BAR, INPUTS, PENDULUM, found_in
 
 @pytest.fixture(scope="module")
 def soft(tmp_path_factory):
-    """The check of a four-bar with MuJoCo's default settings."""
+    """The result of a check of a four-bar with MuJoCo's default settings."""
     return found_in(tmp_path_factory.mktemp("soft"), FOUR_BAR, duration=0.2)
 
 
 @pytest.fixture(scope="module")
 def swing(tmp_path_factory):
-    """The check of a pymunk pendulum without a given step."""
+    """The result of a check of a pymunk pendulum without a given step."""
     return found_in(tmp_path_factory.mktemp("swing"), PENDULUM, "swing.py", "swing.py:make", tolerance=1e-2)
 
 
 def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: float) -> CheckResult:
-    """A copy of a check whose table has these errors and costs, those of the user's settings first."""
+    """A copy of a result with these (error, cost) in its table; the first row has the user's settings."""
     first = found.table[0]
     table = [
         replace(
@@ -68,7 +68,8 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
 @pytest.mark.parametrize(
     ("rows", "advised", "tenth"),
     [
-        # (error, cost) of each setting, the user's first. A tenth refers to the advised error, not to the tolerance.
+        # (error, cost) of each setting; the first are the user's settings. `tenth` is the setting with a tenth of the
+        # advised error.
         ([(1e-5, 1.0), (1e-6, 2.0)], 0, 1),
         ([(1e-5, 1.0), (2e-5, 0.5)], 1, None),
         ([(1e-3, 1.0), (2e-5, 0.5), (1e-5, 3.0)], 1, None),
@@ -89,11 +90,10 @@ def test_an_error_equal_to_the_tolerance_meets_it_and_a_larger_one_does_not(soft
     for error, met in ((1e-4, True), (1.001e-4, False)):
         assert with_settings(soft, (error, 1.0), tolerance=1e-4).met == met
     diverged = replace(soft.table[0], errors=replace(soft.own_errors, finished=False))
-    assert check_data(replace(soft, table=[diverged]))["error"] is None  # infinity is no number of JSON
+    assert check_data(replace(soft, table=[diverged]))["error"] is None  # JSON has no infinity
 
 
 def test_the_users_settings_are_in_the_table_even_if_their_run_exhausts_the_budget(soft):
-    """A run that exhausts the budget leaves no time for other settings, but is itself in the table."""
     reading, slow = soft.reading, replace(soft.own, stepping=50.0)
     truth = soft.judge.trajectory
     (only,) = run_settings_sweep(reading, truth, 100, 1, slow, lambda number, count: None, SweepPlan(0.0), 1e-4)
@@ -102,7 +102,7 @@ def test_the_users_settings_are_in_the_table_even_if_their_run_exhausts_the_budg
 
 
 def test_the_text_of_the_report(soft, golden):
-    """Errors and costs are fixed here, since those of a run depend on the machine."""
+    """Errors and costs are fixed numbers, since measured costs depend on the machine."""
     errors_of_judge = replace(soft.judge_errors, of=dict.fromkeys(soft.own_errors.of, 1e-12 + 0 * soft.judge_errors.t))
     rows = [(1e-3, 1.0), (3e-5, 2.0), (3e-6, 6.0)]
     parts = replace(soft.parts, softness=8e-4, step=2e-4, rest=5e-5, smallest=1e-4, falling=True)
@@ -127,14 +127,14 @@ def test_the_text_of_the_report(soft, golden):
 
 
 def off_by(found: CheckResult, size: float, step: float):
-    """The user's settings at another step, with a run whose poses differ by this from the ideal motion [m, rad]."""
+    """The user's settings with the step `step` [s] and a run whose angles have the error `size` [rad]."""
     truth = found.judge.trajectory
     run = replace(truth, pose=truth.pose + size * np.array([0.0, 0.0, 1.0]))
     return replace(found.table[0], run=run, change=replace(found.table[0].change, dt=step))
 
 
 @pytest.mark.parametrize(
-    # The error still falls if the smallest step reduces it by more than a quarter.
+    # The error counts as falling if the smallest step reduces it by more than a quarter.
     ("sizes", "falls"),
     [([4e-3, 2e-3, 1.4e-3], True), ([4e-3, 2e-3, 1.6e-3], False), ([1e-3, 2e-3], False), ([7e-3], False)],
 )
@@ -160,7 +160,8 @@ def four_bar(crank: float, coupler: float, rocker: float, ground: float, start: 
 
 @pytest.mark.parametrize("drive", [True, False])
 def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
-    """At a dead centre, crank length plus or minus coupler length is the distance from crank pivot to rocker end."""
+    """At a dead centre the distance from the crank's pivot to the rocker's end is coupler length plus or minus crank
+    length."""
     a, b, c, d, start, rate = 0.2, 0.8, 0.5, 0.9, 0.3, 2.0
     facts = compute_facts(*four_bar(a, b, c, d, start, rate, drive))
     wanted = []
@@ -176,7 +177,7 @@ def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
 
 
 def test_the_flat_position_of_a_parallelogram_is_near_singular():
-    """The parallelogram is flat after half a turn of the crank; its rows are dependent there, and only there."""
+    """The rows of the parallelogram are dependent only when it is flat."""
     facts = compute_facts(*four_bar(0.3, 0.8, 0.3, 0.8, start=0.4, rate=1.0, drive=False))
     ((at, size),) = facts.singular
     assert at == pytest.approx(np.pi - 0.4, abs=0.011)
@@ -185,7 +186,7 @@ def test_the_flat_position_of_a_parallelogram_is_near_singular():
 
 @pytest.mark.parametrize("rate", [1e-3, 1e3])
 def test_accelerations_that_should_be_zero_are_compared_with_those_of_the_mechanisms_own_size(rate):
-    """A wheel at a constant rate: an error of a thousandth of rate squared is 1e-3 in any unit of time."""
+    """A wheel turns at a constant rate. The relative error 1e-3 must not depend on the unit of time."""
     wheel = Body("wheel", 1.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, rate))
     mechanism = Mechanism((wheel,), (Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0)),), (0.0, 0.0))
     off = np.array([[0.0, 0.0, 1e-3 * mechanism.time_scale**-2]])
@@ -204,7 +205,7 @@ def test_a_violation_of_an_angle_is_reported_in_radians():
     opening = find_opening(mechanism, run)
     assert opening is not None
     assert (opening.gap, opening.unit, opening.t) == (pytest.approx(0.2), "rad", 1.0)
-    # In a mechanism of 1 km a gap of 1 m is smaller than one of 0.2 rad.
+    # In a mechanism of 1 km the relative gap of 1 m is smaller than an angle of 0.2 rad.
     bodies = (replace(body, name="cabin", pose=(1e3, 0.0, 0.0)), body)
     joints = (*joints, Pin("cable", None, "cabin", (0.0, 0.0), (-1e3, 0.0)))
     pose = np.array([[[1e3, 0.0, 0.0], [0.0, 0.0, 0.0]], [[1001.0, 0.0, 0.0], [0.0, 0.0, 0.2]]])
@@ -262,8 +263,8 @@ def test_a_torque_that_is_zero_by_symmetry_is_not_the_scale_of_reaction_errors()
     assert result.own_errors.worst["reaction"] < 0.01
     assert result.advised is not None
     off = np.abs(result.advised.run.reaction - truth.reaction)[:, ~mechanism.is_angular].max()
-    assert off < 1e-5 * forces.max()  # The compliance that the stiffest loop keeps.
-    # The measure compares vectors of two components, and here single components.
+    assert off < 1e-5 * forces.max()  # The difference is the compliance of the stiffest loop.
+    # The measured error is that of vectors with two components; `off` is that of a single component.
     assert off / forces.max() / 2 < result.advised.reaction < 2 * off / forces.max()
     wrong = truth.reaction + 0.1 * mechanism.is_angular * np.abs(truth.reaction).max() * result.facts.length
     run = type(truth)(truth.t, truth.pose, truth.twist, wrong, 0.0)
@@ -277,7 +278,7 @@ def test_the_error_of_a_force_does_not_depend_on_the_axes():
     run = DEFAULT.build(mechanism, 1e-3)(30, 10)
     measured = measure_errors(mechanism, truth, run).worst["reaction"]
     sine, cosine = np.sin(0.7), np.cos(0.7)
-    turn = np.kron(np.eye(mechanism.row_count // 2), [[cosine, -sine], [sine, cosine]])  # all rows are those of pins
+    turn = np.kron(np.eye(mechanism.row_count // 2), [[cosine, -sine], [sine, cosine]])  # all joints are pins
     ideal, stepped = (replace(motion, reaction=motion.reaction @ turn.T) for motion in (truth, run))
     assert measure_errors(mechanism, ideal, stepped).worst["reaction"] == pytest.approx(measured, rel=1e-9)
 
@@ -300,7 +301,7 @@ def test_the_initial_impulse_of_a_motor_is_not_an_error_of_forces_or_energy():
 
 
 def test_a_mechanism_that_only_second_order_terms_lock_is_refused():
-    """A rod in line with a hinge can't bear a transverse force, but the rigid joints allow no motion."""
+    """The joints allow no motion, although the rod is in line with the hinge and can't bear a transverse force."""
     space = Space()
     space.gravity = (0, -9.81)
     body = MunkBody(2, 0.2)

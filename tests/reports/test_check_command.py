@@ -1,4 +1,4 @@
-"""`crosscheck check`, `export` and `view` on the command line: files, exit statuses, and a line for each bad model."""
+"""Tests of the commands `check`, `export` and `view`: files, exit statuses, and messages for bad models."""
 
 # pyright: reportAttributeAccessIssue=false
 # MuJoCo's module has no list of its names.
@@ -26,7 +26,7 @@ from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
-WRITTEN = ("html", "junit", "markdown")  # options that name a report
+WRITTEN = ("html", "junit", "markdown")  # options with the path of a report
 
 
 def test_a_missed_tolerance_gives_exit_status_1_and_report_files(here, capfd):
@@ -126,7 +126,7 @@ def test_a_view_without_a_display_is_an_animation_in_a_file(here, capfd, monkeyp
 
 
 class Window:
-    """A substitute for the viewer's window: it is open for three queries."""
+    """A substitute for the viewer's window, which closes after three steps."""
 
     last: ClassVar[Window]
 
@@ -148,7 +148,6 @@ class Window:
 
 
 def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(here, monkeypatch):
-    """A real window was inspected by hand in Xvfb: it shows the moving bars from above."""
     viewer = types.ModuleType("mujoco.viewer")
     viewer.launch_passive = Window  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "mujoco.viewer", viewer)
@@ -226,7 +225,8 @@ def test_a_bad_model_is_refused_in_one_sentence(tmp_path, word):
 def test_a_script_can_use_files_and_modules_in_its_folder(tmp_path):
     home, paths = Path.cwd(), list(sys.path)
     (tmp_path / "length.txt").write_text("0.5")
-    for name in ("csv", "reference", "local"):  # modules of Python, of this suite, and of no package
+    # names of a module of Python, of a package of this suite, and of no other module
+    for name in ("csv", "reference", "local"):
         (tmp_path / f"{name}.py").write_text("MINE = True")
     (tmp_path / "swing.py").write_text(
         "import csv, local, pymunk, reference, sys\nassert csv.MINE and local.MINE and reference.MINE\n"

@@ -46,13 +46,13 @@ CLOSE = 1e-6
 
 
 def own_errors(poses: NDArray[Any], truth: NDArray[Any]) -> tuple[float, float]:
-    """The largest errors of angles [rad] and positions [m]; a pose is (2 or 3 coordinates, angle)."""
+    """The largest errors of angles [rad] and positions [m]. Poses have two or three coordinates, then the angle."""
     off = np.abs(poses - truth)
     return off[..., -1].max(), np.linalg.norm(off[..., :-1], axis=-1).max()
 
 
 def of_mujoco(path: Path, t: NDArray[Any]) -> tuple[float, float, int]:
-    """The errors of the unchanged model at instants t, and the number of freedoms of the ideal model."""
+    """(angle error, position error, degrees of freedom) of the user's model at times t."""
     model = mujoco.MjModel.from_xml_path(str(path))
 
     def begin() -> Any:
@@ -90,7 +90,7 @@ def of_mujoco(path: Path, t: NDArray[Any]) -> tuple[float, float, int]:
 
 
 def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
-    """The errors of the unchanged space of the script."""
+    """The angle error and the position error of the space in the user's script."""
     truth = Equations(runpy.run_path(str(path))["space"]).motion(t)
     space, run = runpy.run_path(str(path))["space"], []
     for _ in t:
@@ -101,14 +101,14 @@ def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
 
 
 def checked(path: Path, duration: float) -> CheckResult:
-    """Check only the settings of the model."""
+    """The result of a check that tries no other settings."""
     step = STEP if path.suffix == ".py" else None
     return check(
         read_user_model(path.name, path.parent, ReadingTerms(step=step)), path.name, duration, 1e-4, plan=SweepPlan(0.0)
     )
 
 
-# (name, duration [s], freedoms, length of the mechanism [m] if the far end of a spring could affect it).
+# (name, duration [s], degrees of freedom, expected length scale [m] or None).
 MUJOCO_MODELS = [
     ("fast_motor", 1.0, 1, None),
     ("jansen_leg", 1.0, 1, None),
@@ -157,7 +157,7 @@ def test_the_error_of_a_pymunk_script_is_that_of_an_independent_integration(name
 
 
 def test_the_error_does_not_depend_on_the_plane_or_on_the_order_of_bodies(tmp_path):
-    """The excavator with its bodies in reverse order, in a plane that is oblique to all axes."""
+    """The excavator is rotated to an oblique plane, and its bodies are listed in reverse order."""
     tree = xml.parse(INPUTS / "excavator.xml")
     world, option = tree.find("worldbody"), tree.find("option")
     assert world is not None
@@ -189,7 +189,7 @@ def test_a_motion_of_one_freedom_continues_through_a_dead_centre():
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
 def test_a_parallelogram_stays_on_its_branch_at_dead_centres(scale):
-    """At a dead centre two configuration curves cross and a multiplier is undefined, but velocities are continuous."""
+    """At a dead centre two branches cross and a multiplier is undefined, but velocities are continuous."""
     crank, start = 0.2 * scale, np.arctan2(0.16, 0.12)
     names, at = ("left", "rod", "right"), (0.0, 1.0 * scale)
     pin = [np.array([x, 0.0]) for x in at]
@@ -256,7 +256,7 @@ def test_the_verdict_on_a_locked_space_states_that_it_is_locked(second):
 
 @pytest.mark.parametrize(("scale", "far"), [(1.0, 0.0), (1e-6, 1e3), (1e6, 1e3)])
 def test_the_far_end_of_a_spring_along_a_slide_does_not_change_length_and_time_scale(scale, far):
-    """A block in a groove of a swinging bar, with a spring and a damper whose fixed end is near or far away."""
+    """A block slides in a groove of a swinging bar; the other end of its spring and its damper is near or far away."""
     bar, block = (
         Body("bar", 1.0, 0.1 * scale**2, (0, 0, 0.3)),
         Body("block", 0.5, 1e-3 * scale**2, (0.4 * scale * np.cos(0.3), 0.4 * scale * np.sin(0.3), 0.3)),
@@ -271,9 +271,9 @@ def test_the_far_end_of_a_spring_along_a_slide_does_not_change_length_and_time_s
         (spring, Damper("damper", *ends, 2.0)),
     )
     assert linkage.length_scale == pytest.approx(0.1 * scale)
-    # At the point of the slot the inverse inertia of the bar is 1 / m + r^2 / I, that of the block 1 / m.
+    # At the slot's point the bar has the inverse inertia 1 / m + r^2 / I, and the block has 1 / m.
     assert linkage.time_scale == pytest.approx(1 / np.sqrt(200 * (1 + 0.1**2 / 0.1 + 2)))
-    # For a single block on the ground, the extension of the spring is the only length.
+    # A single block on the ground has only one length, the extension of the spring.
     groove = Slot("groove", None, "block", (-far * scale, 0.0), 0.0, (0.0, 0.0))
     stored = Spring("spring", None, "block", (-far * scale, 0.0), (0.0, 0.0), 20.0, (far + 0.5) * scale)
     alone = Mechanism((Body("block", 0.5, 1.0, (0.2 * scale, 0.0, 0.0)),), (groove,), (0.0, 0.0), (stored,))
@@ -299,7 +299,7 @@ def limited(kind: str, both_sided: bool) -> Space:
     upper, lower = MunkBody(2, 0.2), MunkBody(1, 0.1)
     upper.position, lower.position = (0.5, 0), (1.0, -0.4)
     space.add(upper, lower)
-    if kind == "turned ground":  # the angle of a body at rest counts as it does in pymunk
+    if kind == "turned ground":
         lower.angle = 0.5
         lower.position = (1.0 + 0.4 * np.sin(0.5), -0.4 * np.cos(0.5))
         space.static_body.angle = 0.2
@@ -317,7 +317,7 @@ def test_a_limit_with_equal_ends_is_read_as_a_joint(kind):
     truth = reference_motion(same, 20, 0.025).trajectory
     np.testing.assert_allclose(reference_motion(mechanism, 20, 0.025).trajectory.pose, truth.pose, rtol=0, atol=1e-10)
     assert any("its min and max are equal" in note.reason for note in result.reading.notes)
-    assert result.own_errors.largest < 0.02  # pymunk follows the joint, to the first order of its step
+    assert result.own_errors.largest < 0.02  # pymunk has a joint error of first order
 
 
 CONNECT = '<connect name="C" body1="coupler" body2="rocker" anchor="0.8 0 0.3"'
@@ -332,7 +332,8 @@ LOOPS = {
 
 @pytest.mark.parametrize("loop", LOOPS)
 def test_the_declared_softness_of_a_loop_follows_the_diagonal_that_the_flag_selects(loop):
-    """MuJoCo's rows are along the world's axes, so that in a rotated plane the compliance of a loop is a matrix."""
+    """The rows in MuJoCo have the directions of the world's axes, so the compliance of a loop in a rotated plane is a
+    matrix."""
     run, soft = {}, {}
     turned = "20 35 10" if "connect" in loop else "0 0 0"
     for flag in ("enable", "disable"):

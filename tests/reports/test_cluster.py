@@ -1,4 +1,4 @@
-"""A cluster gives the same rows as the pool, each once, even if workers are killed; other versions are refused."""
+"""Tests of a cluster: it returns the same rows as the pool even if workers are killed, and refuses other versions."""
 
 from __future__ import annotations
 
@@ -95,13 +95,13 @@ def test_an_item_with_other_source_files_or_none_is_not_run(tmp_path, monkeypatc
     assert refused.versions.keys() >= {"Python", "numpy", "our source files"}
     other = clusters._refused(Refusal({**refused.versions, "numpy": "99.0"}), cell, "tcp://there:1")
     assert f"numpy 99.0 there, {version('numpy')} here" in str(other)
-    theirs = b"(\x8c\x12a_file_of_somebody\x8c\x01f\x93Nt."  # what pickle makes of a function in it
+    theirs = b"(\x8c\x12a_file_of_somebody\x8c\x01f\x93Nt."  # a pickled function of the module `a_file_of_somebody`
     missing = run_item(str, (), theirs)
     assert isinstance(missing, Refusal)
     assert "a_file_of_somebody" in missing.versions["what it would run"]
     (tmp_path / "a_file_of_somebody.py").write_text("def f(item): return 'found'\n")
     monkeypatch.setattr(sys, "path", [*sys.path])
-    assert "function f" in run_item(str, (str(tmp_path),), theirs)  # on the same machine it is found
+    assert "function f" in run_item(str, (str(tmp_path),), theirs)  # the module is found in the given folder
 
 
 def test_a_missing_scheduler_or_dask_is_reported_in_one_line(monkeypatch):

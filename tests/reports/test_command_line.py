@@ -48,7 +48,7 @@ def environment():
 
 
 def one_line(err):
-    err = re.sub(r"^compiling the judge's machine code.*\n", "", err)  # printed once after an installation
+    err = re.sub(r"^compiling the judge's machine code.*\n", "", err)
     assert len(err.strip().splitlines()) == 1, err
     assert err.startswith("crosscheck: ")
     return err
@@ -94,7 +94,7 @@ def one_stored(folder):
 
 
 def checkout(folder, monkeypatch):
-    """Write the files that identify a checkout, and use it; return path -> text."""
+    """Write files of a checkout and make it the checkout of the report; return path -> text."""
     texts = {"README.md": "a readme", "reports/results/index.md": "an index"}
     for name, text in texts.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -116,7 +116,7 @@ def test_an_incomplete_grid_is_not_published(here, monkeypatch, capfd):
 
 
 def test_nothing_is_published_if_an_engine_of_published_rows_is_not_installed(here, monkeypatch, capfd):
-    """Cells of an engine that is not installed do not count as missing, so their rows would disappear."""
+    """Cells of an engine that is not installed do not count as missing, so their published rows would be deleted."""
     texts = checkout(here / "checkout", monkeypatch)
     texts["reports/results/errors.csv"] = as_csv(
         [row(engine=name) for name in ("bullet", "pymunk", "mjx")], timings=False
@@ -133,7 +133,7 @@ def test_nothing_is_published_if_an_engine_of_published_rows_is_not_installed(he
 
 
 def test_only_publish_writes_into_the_checkout(here, monkeypatch):
-    """The grid has one cell and one page with one line, since rendering is not tested here."""
+    """The grid is replaced by one cell, and the pages by one short page."""
     checkout(here / "checkout", monkeypatch)
     cell = Cell(Disc(), Toy(), 1)
     monkeypatch.setattr(catalogue, "PAGES", (PAGE,))
@@ -183,7 +183,7 @@ def test_all_files_are_replaced_or_none(tmp_path, monkeypatch):
 
 
 def test_output_into_a_pipe_does_not_replace_the_pipe(tmp_path, capfd):
-    """As root the program could otherwise replace /dev/null by a file."""
+    """Otherwise a program with root rights could replace /dev/null by a file."""
     pipe = tmp_path / "a.gif"
     os.mkfifo(pipe)
     reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
@@ -262,7 +262,7 @@ def test_a_closed_pipe_ends_the_program_without_a_message():
 
 
 def test_the_program_runs_with_closed_standard_streams(tmp_path):
-    """A file that got the number of a closed stream would be overwritten by output."""
+    """A file that is opened with the descriptor of a closed stream would be overwritten by output."""
     text = [sys.executable, "-m", "reports", "run", *ONE_CELL, "--results", str(tmp_path)]
     process = subprocess.run(["sh", "-c", 'exec "$@" <&- >&- 2>&-', "sh", *text], env=environment())
     assert process.returncode == FINE

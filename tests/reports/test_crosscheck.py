@@ -1,4 +1,4 @@
-"""Tests of the grid; the tests of its cells are in `reports.gate.grid_tests`."""
+"""Runs the tests of the grid, which are in `reports.gate.grid_tests`."""
 
 from __future__ import annotations
 

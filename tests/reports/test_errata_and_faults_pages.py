@@ -1,4 +1,4 @@
-"""Faults of engines and slips of the chapter: scripts print the documented output, derivatives confirm corrections."""
+"""Tests of faults and errata: scripts print the documented output, and derivatives confirm the right formulas."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ from tests.reports.test_command_line import call, one_line
 from tests.wrong.mistakes import mistaken, mistakes
 
 TABLE = re.compile(r"^(\w.*?) +(\de-\d\d)((?: +\d\.\de[+-]\d\d)+)$", re.MULTILINE)
-CORRECTED = {"mujoco_loop", "mujoco_sparse"}  # faults that the releases under test do not have
+CORRECTED = {"mujoco_loop", "mujoco_sparse"}  # scripts of faults that the installed releases do not have
 
 
 def documented(name: str) -> list[str]:
-    """The outputs that the document of a script shows; the first line of each is the release."""
+    """The outputs of a script in its document; the first line of an output states the release."""
     (text,) = (text for path in UPSTREAM.iterdir() if f"{name}.py" in (text := path.read_text(encoding="utf-8")))
     if "_cost" not in name:
         later = text.partition(f"`{name}.py`")[2]
@@ -51,7 +51,7 @@ def documented(name: str) -> list[str]:
 
 @pytest.mark.parametrize("name", sorted(scripts()))
 def test_the_output_of_a_script_agrees_with_its_document(name):
-    if name.startswith("mjx"):  # it compiles for seconds
+    if name.startswith("mjx"):  # MJX compiles for seconds
         assert all(re.search(r"expected|step", output) for output in documented(name))
         return
     package = "mujoco-core" if name.startswith("mujoco") else "pymunk"
@@ -59,7 +59,7 @@ def test_the_output_of_a_script_agrees_with_its_document(name):
     if name in CORRECTED:
         assert all(is_right(float(expected), float(result)) for expected, result in RESULT.findall(printed))
     same = [output for output in documented(name) if re.search(rf" {metadata.version(package)}\b(?! with)", output)]
-    for output in same:  # none for a fault of earlier releases, or where a newer release is installed
+    for output in same:  # the list is empty unless the document has an output of the installed release
         numbers, earlier = (np.array(RESULT.findall(text), dtype=float) for text in (printed, output))
         assert numbers == pytest.approx(earlier, rel=1e-12)
         now = {row[:2]: list(map(float, row[2].split())) for row in TABLE.findall(printed)}
@@ -94,7 +94,7 @@ def test_a_script_whose_extra_is_missing_is_not_run_and_its_page_and_answer_name
     assert sentence in render_page(PAGE, Material({}), "crosscheck run")["faults.md"]
 
 
-# Least error of a printed formula. Slip 19 is an integration with the tolerance 1e-3.
+# Smallest expected error of a printed formula by slip. Slip 19 is an integration with the tolerance 1e-3.
 LEAST = {19: 1e-3}
 
 
@@ -108,7 +108,7 @@ def test_the_correction_is_the_derivative_and_the_printed_formula_is_not():
     assert [slip.number for slip in referees.WORD_SLIPS] == [10, 18]
     rolling = errata.rolling_acceleration()
     for number, values in {0: rolling, **{slip.number: slip.values for slip in referees.ERRATA}}.items():
-        # The values are 1 to 10, and Cauchy's integral divides rounding by radius^2 = 1/16.
+        # The values are 1 to 10, and Cauchy's integral formula multiplies rounding by 1/radius^2 = 16.
         assert values.agreement < 1e-12, number
         assert values.miss > LEAST.get(number, 0.1), number
 
@@ -134,7 +134,7 @@ def test_two_engines_or_more_confirm_each_right_formula_and_contradict_the_print
 
 
 def test_the_motion_of_a_wrong_mechanism_contradicts_the_right_formula():
-    """With a bar that is 1 % too long, neither formula agrees with the accelerations of the bars' ends."""
+    """A bar is 1 % too long, so neither formula agrees with the accelerations of the bars' ends."""
     mechanism = referees.double_pendulum()
     length = next(mistake for mistake in mistakes(mechanism) if mistake.kind == "length")
     motion = mistaken(referees.REFEREES[-1], length, 1e-2).build(mechanism, referees.WINDOW_SPACING)(

@@ -1,4 +1,4 @@
-"""Findings, symptoms and guides from the committed rows."""
+"""Tests of findings, symptoms and guides with the committed rows."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ from tests.rows import falling
 
 TAUGHT = tuple(page for page in PAGES if page.name in ("four_bar", "pendulum", "person", "skate", "rolling"))
 FAULTS, VERSIONS = (next(page for page in PAGES if page.name == name) for name in ("faults", "versions"))
-OF_RELEASES = {"faults", "releases", "trees"}  # findings without rows of scenes
+OF_RELEASES = {"faults", "releases", "trees"}  # findings that use no rows of scenes
 
 
 def changed(change):
-    """The material of the pages, with `change(row)` in place of each row; None removes the row."""
+    """The pages with their rows changed by `change(row)`; a row is left out if the result is None."""
     pages = {
         FAULTS: Material({}, {task: answer_to(task) for task in (OFFSETS, *SCRIPTS.values())}),
         VERSIONS: Material({}),
@@ -66,7 +66,7 @@ def sources() -> Sources:
 
 
 def times(factor, step, name, row):
-    """The row with an error multiplied by a factor, if it has this step [s] or if no step is given."""
+    """The row with the error `name` multiplied by `factor`; rows at other steps than `step` are unchanged."""
     return replace(row, **{name: factor * getattr(row, name)}) if step is None or is_step(row.step, step) else row
 
 
@@ -76,7 +76,7 @@ def falls(name, row):
 
 
 def changes(names):
-    """Functions that change the rows of one method."""
+    """Yield functions that change the rows of one method."""
     yield lambda rows: rows[:1]
     for name in names:
         yield partial(map, partial(falls, name))
@@ -142,7 +142,7 @@ def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours(
     with pytest.raises(ValueError, match="5 lines"):
         draw([*steps, PlottedLine("e", "pymunk", ())], STEP_AXIS, "error")
     against_cpu = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU_AXIS)
-    assert [x for x, _ in against_cpu.points] == pytest.approx([1.0, 10.0])  # ms per simulated second
+    assert [x for x, _ in against_cpu.points] == pytest.approx([1.0, 10.0])  # CPU times [ms per simulated second]
 
 
 def test_every_symptom_has_a_link_to_an_existing_section():
@@ -160,5 +160,5 @@ def test_the_programs_of_the_settings_print_the_weight_of_the_hanging_body():
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(compile(source, "a page", "exec"), {"__name__": "__main__"})
-        assert printed.getvalue().count("19.62") == 2  # 2 kg at 9.81 m/s^2: by Newton's law, and by the engine
+        assert printed.getvalue().count("19.62") == 2  # the weight of 2 kg by Newton's law and by the engine
         assert "-19.62" not in printed.getvalue()

@@ -1,4 +1,4 @@
-"""Cache keys: a result is stale if a source file or an installed version on which it depends has changed."""
+"""Tests of cache keys: a result is stale if its source files or the versions of its packages have changed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def forget() -> None:
 
 
 def key(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
-    """The fingerprint as another process computes it."""
+    """The fingerprint, computed without cached values."""
     forget()
     return fingerprint.fingerprint(*values, folders=folders)
 
@@ -74,7 +74,7 @@ class Theirs(Toy):
 
 @pytest.fixture
 def theirs(tmp_path, monkeypatch):
-    """A user's engine with a module and a data file in the same folder, and with another file that it does not use."""
+    """A user's engine that uses a module and a data file in its folder; the folder has another, unused file."""
     files = {"their_engine.py": ENGINE, "helping.py": "number = 1\n", "numbers.txt": "7\n", "notes.txt": "x\n"}
     for name, text in files.items():
         (tmp_path / name).write_text(text)
@@ -91,7 +91,8 @@ def test_a_changed_file_of_a_user_s_engine_makes_its_rows_stale(theirs, tmp_path
     class EngineInTuple:
         parts: tuple[Any, ...]
 
-    engines = (theirs, Altered(theirs, Nudge(1)), EngineInTuple((theirs,)))  # directly, in a wrapper and in a tuple
+    # an engine, its wrapper, and an engine with a tuple of engines
+    engines = (theirs, Altered(theirs, Nudge(1)), EngineInTuple((theirs,)))
     earlier = [key(Disc(), engine) for engine in engines]
     other = key(Disc(), DEFAULT)
     (tmp_path / name).write_text((tmp_path / name).read_text() + "# more\n")
@@ -150,7 +151,7 @@ def test_every_number_of_a_cell_is_in_its_key():
 
 
 def test_a_release_under_another_distribution_name_changes_the_key_of_rows(monkeypatch):
-    """The package mujoco is in the distribution mujoco for version 3.6, and in mujoco-core for version 4.0."""
+    """MuJoCo 3.6 is installed by the distribution mujoco, and MuJoCo 4.0 by mujoco-core."""
     expected = dict(fingerprint._distributions())
     assert "pytest" not in versions_of(Disc(), DEFAULT)
     monkeypatch.setattr(fingerprint, "_distributions", lambda: {**expected, "pymunk": ["pymunk", "pytest"]})

@@ -1,4 +1,4 @@
-"""The three forms of a command's output, cells that are left out, and the pages of a small store."""
+"""Tests of the three output formats, of cells that are left out, and of the pages from a small store."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_a_document_has_the_error_message_and_two_forms_at_once_are_refused(caps
 
 
 class Slow(Lagrange):
-    """An engine that declares a cost of 1 s for a step."""
+    """An engine with the declared cost of 1 s per step."""
 
     name = "slow"
 

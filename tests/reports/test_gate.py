@@ -119,7 +119,8 @@ BOUNDS: dict[str, tuple[Given, str, float]] = {  # (arguments of `theory`, quant
     "a promise of all others": ((JUDGE, ConvergenceOrder(4, rate=2), None, []), "angle", ROOM * 1e-12 + 1e-11),
     "an exact gap": ((JUDGE, ConvergenceOrder(4, gap=EXACT), None, []), "gap", 1e-12),
     "a reaction of a single step without a promise": ((JUDGE, UNKNOWN, None, []), "reaction", 0.5),
-    # The bound of the rate is 2 rad/s^2 times half a step of 1e-3 s, although the coarser steps allow more.
+    # The bound of the rate is that for 2 rad/s^2 during half a step of 1e-3 s, whatever the errors at coarser steps
+    # are.
     "the middle of a step": (
         (PRESCRIBED, ConvergenceOrder(2, rate=1), None, coarser("rate", at1=1e-2, at3=3.3e-3)),
         "rate", 1.25e-3 + 1e-10),

@@ -1,4 +1,4 @@
-"""Steps and costs of cells, fits of power laws, and the page of scaling with its banded solver."""
+"""Tests of steps and costs of cells, of fits of power laws, and of the page "scaling" with its banded solver."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_the_banded_solver_and_a_dense_solver_give_equal_forces():
     truth = LongPendulum(7, tip=3.0)
     angle, rate = truth.states([0.2, 0.5])
     pose, _, acceleration = truth.chain.placement(angle, rate, truth.chain.accelerations(angle, rate))
-    # Forces are up to 1e3 N, and the matrix of the dense solver has a condition number of 1e3.
+    # The tolerance covers forces of 1e3 N and a condition number of 1e3 in the dense solver.
     assert long.reaction(pose, acceleration) == pytest.approx(plain.reaction(pose, acceleration), abs=1e-8)
     assert long.reaction(pose, acceleration) == pytest.approx(truth.motion([0.2, 0.5]).reaction, abs=1e-8)
 
@@ -55,7 +55,7 @@ def test_an_exponent_is_fitted_to_the_largest_sizes():
 
 @dataclass(frozen=True)
 class ToyChain(Disc):
-    """A toy with a number of links."""
+    """A scene of the toy engine with a number of links."""
 
     links: int = 1
 
@@ -75,9 +75,9 @@ def test_each_point_of_a_series_has_the_numbers_of_its_cell():
     tuned, other = series_of(rows, 0.2)
     assert (tuned.method, other.method) == ("toy tuned", "toy other")
     assert [p.size for p in tuned.points] == [10, 50, 100, 1000, 2000]
-    # The CPU time of a step is the CPU time per simulated second times the step: 0.02 s, 1e-3 s or 5e-4 s.
+    # The CPU time of a step is the CPU time per simulated second times the step.
     assert [p.step for p in tuned.points] == pytest.approx([6e-5, math.nan, 1.4e-4, 5e-6, 5.5e-6], nan_ok=True)
-    # Neither a row of a short run, which measures only the cost, nor a failed row has an error.
+    # Rows of short runs and rows of failed runs have no error.
     assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
     assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
     assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
@@ -93,7 +93,7 @@ class ToyClock:
 
 @dataclass(frozen=True)
 class SlowToy(Plain):
-    """An engine whose builds and runs take the times in two lists [s]."""
+    """An engine whose builds and runs take the times [s] in the lists `builds` and `steps`."""
 
     clock: ToyClock
     builds: list
@@ -145,7 +145,7 @@ def test_a_step_must_divide_the_sampling_to_ten_digits():
 
 @dataclass(frozen=True)
 class Costly(Toy):
-    """An engine that declares the cost of a step [s]."""
+    """An engine with the declared cost `cost` of a step [s]."""
 
     cost: float = 3e-3
 
@@ -163,7 +163,7 @@ def test_the_step_and_the_cost_of_a_cell_follow_from_its_number_of_steps():
 
 def test_a_grid_has_each_step_below_the_cost_limit_and_always_the_largest_step():
     assert (QUICK, FULL) == ((1, 3, 10), (1, 3, 10, 30, 100, 300))
-    # With 20 samples and 0.2 ms for a step, the limit of 0.8 s allows 200 steps between samples.
+    # A step takes 0.2 ms, so 20 samples with 200 steps each take the limit of 0.8 s.
     cells = sweep_cells((Disc(),), (Costly(cost=2e-4),), FULL)
     assert [cell.every for cell in cells] == [1, 3, 10, 30, 100]
     assert estimated_cost(cells[-1]) <= COST_LIMIT < estimated_cost(Cell(Disc(), Costly(cost=2e-4), 300))

@@ -1,6 +1,7 @@
-"""Scenes and engines that exit, hang or return wrong data, wrong command lines, and numbers without a finite motion.
+"""Tests with scenes and engines that exit, hang or return wrong data, with wrong command lines, and with extreme
+numbers.
 
-Each gives an outcome or a line, and no traceback.
+Each case gives an outcome or a one-line message without a traceback.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ class Odd(Disc):
     ],
 )
 def test_errors_of_a_users_scene_are_reported_in_one_line(here, monkeypatch, capfd, head, deed, sentence):
-    if "sleep" in deed:  # a loaded machine imports for seconds
+    if "sleep" in deed:  # on a loaded machine an import takes seconds
         monkeypatch.setattr(known, "SLEEPING", 10.0)
     (here / "odd_scene.py").write_text(f"{SCENE}    __hash__ = Disc.__hash__\n    def {head}\n        {deed}\n")
     assert call("run", "odd_scene.py") == REFUSED
@@ -81,7 +82,7 @@ def test_errors_of_a_users_scene_are_reported_in_one_line(here, monkeypatch, cap
     ],
 )
 def test_a_scene_without_duration_or_samples_is_refused(here, text, telling):
-    path = here / f"odd_{abs(hash(text))}.py"  # a name of its own: modules stay
+    path = here / f"odd_{abs(hash(text))}.py"  # the names of modules differ, since Python caches modules
     path.write_text(f"{SCENE}    {text}\n")
     with pytest.raises(ValueError, match=r"\w") as reported:
         load(str(path), catalogue.SCENE)
@@ -102,7 +103,7 @@ def test_a_step_cost_that_is_none_names_the_engine_and_the_scene(deed):
 
 
 def forks(file):
-    """Fork and return the file in both processes, as a careless engine does; the child holds a lock on the file."""
+    """Fork, and return in both processes like a careless engine. The child process holds a lock on the file."""
     import fcntl
 
     stored = os.open(file, os.O_CREAT | os.O_WRONLY)
@@ -158,7 +159,7 @@ COMMANDS = {
     name: [option for param in commands.command(name).params for option in param.opts if option.startswith("--")]
     for name in sorted(commands.COMMANDS)
 }
-FREE = ("", " ", "\x1b[31m", "\udcff", "file\nname", "x" * 5000, "é" * 300)  # and what a shell would split
+FREE = ("", " ", "\x1b[31m", "\udcff", "file\nname", "x" * 5000, "é" * 300)  # words that a shell would split
 SEVERAL = """
 . .. / /dev/null /dev/zero - -- -1 0 1e400 nan -inf 1e-320 free_four_bar FREE pymunk lagrange default nope a=b = crank=
 crank=0 x.py x.py:A a:b:c reference:SCENES os:path model.xml <b> [bold] * ' " %s {0} tcp://127.0.0.1:1 local:0 pymunk==0
@@ -174,7 +175,7 @@ def wrong_line(chance: random.Random) -> list[str]:
         text += [chance.choice(COMMANDS[name]), chance.choice(WORDS)] if chance.random() < 0.7 else []
         text += [chance.choice(WORDS)] if chance.random() < 0.3 else []
     text.insert(1 if chance.random() < 0.5 else len(text), "nope_nope" if chance.random() < 0.75 else "--nonsense")
-    return text  # each has something that no command takes: a right one would do its work
+    return text  # each line has an unknown word or option, since a valid command would be executed
 
 
 def test_a_wrong_command_line_is_reported_in_one_line(here, capfd):
@@ -186,7 +187,7 @@ def test_a_wrong_command_line_is_reported_in_one_line(here, capfd):
         assert status in (FINE, BROKEN, REFUSED), text
         assert "Traceback" not in out + err, text
         assert (out + err).replace("\n", "").isprintable(), text
-        if status == REFUSED:  # above the line there may be one of progress
+        if status == REFUSED:  # lines of progress may precede the message
             reports = [line.startswith("crosscheck: ") for line in err.splitlines()]
             assert (sum(reports), reports[-1]) == (1, True), (text, err)
 
@@ -235,7 +236,7 @@ BY_NAME = {scene.name: scene for scene in SCENES}
 EXTREMES = ("1e200", "1e-200", "-1", "nan")
 
 
-# A chain of a hundred links has the same fields as one of ten, and takes 15 s.
+# "pendulum_100" takes 15 s, and "pendulum_10" has the same fields.
 @pytest.mark.parametrize("scene", [scene for scene in SCENES if scene.name != "pendulum_100"], ids=lambda s: s.name)
 def test_every_number_of_every_scene_gives_a_finite_start_or_a_refusal(scene: Scene):
     for field in fields(scene):  # type: ignore[arg-type]
@@ -279,7 +280,7 @@ def test_a_missing_exact_motion_is_not_counted_as_an_error_of_the_engine(name, n
 
 @dataclass(frozen=True)
 class Wrong(Disc):
-    """A user's scene whose exact motion has one of several defects."""
+    """A user's scene whose exact motion has the defect `how`."""
 
     name: ClassVar[str] = "wrong"
     how: str = ""

@@ -1,4 +1,4 @@
-"""The functions of planar_crosscheck, the importers and the fixtures in notebooks, scripts and users' tests."""
+"""Tests of planar_crosscheck, the importers and the fixtures in notebooks, scripts and users' tests."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_a_linkage_has_its_bars_between_the_given_points():
         ends = np.array([x, y]) + np.outer([-length / 2, length / 2], [math.cos(angle), math.sin(angle)])
         np.testing.assert_allclose(ends, [POINTS[first], POINTS[second]], atol=1e-15)
     assert result.degrees_of_freedom() == (1, 1)
-    # One point connects three bars, and one bar hangs freely.
+    # The point C connects three bars, and the bar "arm" hangs freely.
     extra = linkage({**POINTS, "E": (1.5, 0.6)}, {**BARS, "arm": "CE"}, "AD")
     assert [joint.name for joint in extra.joints] == ["A", "B", "D", "C", "C 2"]
     assert extra.degrees_of_freedom() == (2, 2)
@@ -83,7 +83,7 @@ def test_an_invalid_linkage_is_refused_in_a_sentence(points, bars, ground, sente
 def test_a_comparison_has_the_run_of_the_engine_and_the_exact_motion(monkeypatch):
     scene = FreeFourBar()
     result = planar_crosscheck.compare(scene.mechanism(), "pymunk tuned", dt=1e-3, duration=0.5)
-    assert len(result.run.t) == 251  # about SAMPLES, and whole numbers of steps apart
+    assert len(result.run.t) == 251  # the number is near SAMPLES, so that a whole number of steps lies between samples
     assert planar_crosscheck.compare(scene.mechanism(), "pymunk", 0.1, 0.1).title == "pymunk default at 100 ms"
     truth = scene.motion(result.run.t)
     assert np.abs(result.truth.pose - truth.pose).max() < 1e-9
@@ -93,7 +93,7 @@ def test_a_comparison_has_the_run_of_the_engine_and_the_exact_motion(monkeypatch
         planar_crosscheck.compare(scene.mechanism(), "pymunky", 1e-3)
     with pytest.raises(ValueError, match="dt is 3 s and duration"):
         planar_crosscheck.compare(scene.mechanism(), DEFAULT, 3, 1.0)
-    # pandas is optional; a substitute checks that it gets columns of equal length.
+    # A substitute for pandas, which is optional, returns its arguments.
     pandas = SimpleNamespace(DataFrame=lambda data, index: (data, index), Index=lambda values, name: tuple(values))
     monkeypatch.setitem(sys.modules, "pandas", pandas)
     columns, index = result.frame()
@@ -115,7 +115,7 @@ def test_models_are_read_as_files_and_as_objects(tmp_path):
     assert importers.pymunk.read(space) == importers.pymunk.read(f"{tmp_path / 'swing.py'}:make")
     result = planar_crosscheck.check(space, duration=0.2, step=0.01, quick=True)
     assert result.data["step"] == 0.01
-    assert "<svg" not in result._repr_html_()  # pictures are images of their own
+    assert "<svg" not in result._repr_html_()  # pictures are <img> elements
     assert "data:image/svg+xml" in result._repr_html_()
     with pytest.raises(ValueError, match=r"it is dict; give a file, a mujoco\.MjModel or a pymunk\.Space"):
         planar_crosscheck.check({})

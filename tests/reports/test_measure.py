@@ -1,4 +1,4 @@
-"""Errors of motions with known offsets, and all fields of a row, compared with values that are computed by hand."""
+"""Tests of errors of motions with known offsets, and of all fields of a row, by values that were computed by hand."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ TIMES = np.array([0.0, 0.1, 0.2, 0.3])
 
 @dataclass(frozen=True)
 class Pair(Scene):
-    """A driven disc, and a free disc whose kinetic energy changes; the rows are x and y of a pin, and a torque."""
+    """A driven disc, and a free disc whose kinetic energy changes. The reactions are the force of a pin and a
+    torque."""
 
     name: ClassVar[str] = "pair"
     source: ClassVar[str] = "invented"
@@ -48,7 +49,7 @@ class Pair(Scene):
         return Mechanism((first, second), joints, (0.0, -10.0))
 
     def _motion(self, times: NDArray[np.float64]) -> Trajectory:
-        """The second disc moves along x at 6 t, which is impossible here, but no error depends on this."""
+        """The second disc has the velocity 6 t along x. No force causes it, but no error depends on this."""
         t = times
         pose, twist = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))
         pose[:, 0, 2], twist[:, 0, 2] = 5 * t, 5.0
@@ -60,7 +61,7 @@ class Pair(Scene):
 SCENE = Pair()
 MECHANISM = SCENE.mechanism()
 TRUTH = SCENE.motion(TIMES)
-KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # J; the largest exact kinetic energy, at 0.3 s, after the horizon
+KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # largest exact kinetic energy [J], which is reached at 0.3 s
 
 
 def moved(**offsets: list[tuple[tuple[int, ...], float]]) -> Trajectory:
@@ -76,7 +77,7 @@ def errors(trajectory: Trajectory) -> dict[str, float]:
     return motion_errors(SCENE, MECHANISM, TRUTH, trajectory)
 
 
-# Two bodies at three samples give six distances and angles, of which one is wrong.
+# Root mean square of six values, if one value is 1 and the other values are 0 (two bodies at three samples).
 SIXTH = 1 / math.sqrt(6)
 MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
     "the truth": ({}, {}),
@@ -98,13 +99,13 @@ MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
         },
         {"angle_duration": 0.25},
     ),
-    "a speed": (  # 1.2 m/s along x at 0.2 s, with (0.3, 0.4) m/s more
+    "a speed": (  # the exact velocity is 1.2 m/s along x; (0.3, 0.4) m/s are added
         {"twist": [((2, 1, 0), 0.3), ((2, 1, 1), 0.4)]},
         {"velocity": 0.5, "energy": 0.5 * 7 * (1.5**2 + 0.4**2 - 1.2**2) / KINETIC},
     ),
     "a rate": ({"twist": [((2, 1, 2), 0.25)]}, {"rate": 0.25, "energy": 0.5 * 11 * 0.25**2 / KINETIC}),
     "energy of rotation": ({"twist": [((0, 0, 2), 1.0)]}, {"rate": 1.0, "energy": 0.5 * 3 * (36 - 25) / KINETIC}),
-    # The error of a reaction is relative to the largest one of its kind, 20 N or 8 N m; the larger ratio counts.
+    # The error of a force is relative to the largest force, 20 N, and that of a torque to the largest torque, 8 N m.
     "a force": ({"reaction": [((1, 0), -3.0)]}, {"reaction": 3 / 20}),
     "another force": ({"reaction": [((1, 1), -3.0)]}, {"reaction": 3 / 20}),
     "a torque": ({"reaction": [((1, 2), -3.0)]}, {"reaction": 3 / 8}),
@@ -153,18 +154,18 @@ def test_changes_of_assembly_count_relative_to_the_exact_motion():
 
     def flips(*sides: float) -> int:
         trajectory = replace(truth, pose=truth.pose.copy())
-        trajectory.pose[:, 0, 2] = sides  # The toy has its other assembly above 2 rad.
+        trajectory.pose[:, 0, 2] = sides  # An angle above 2 rad belongs to the other assembly.
         return branch_flips(scene, truth, trajectory)
 
     assert flips(0, 0, 0, 0) == 0
     assert flips(0, 3, 3, 3) == 1
     assert flips(0, 3, 0, 0) == 2
-    assert flips(3, 3, 3, 3) == 1  # on the wrong side from the start
+    assert flips(3, 3, 3, 3) == 1  # the first pose has the wrong assembly
     trajectory = replace(truth, pose=truth.pose.copy())
     trajectory.pose[2:, 0, 2] = 3
     assert branch_flips(scene, trajectory, trajectory) == 0
     assert branch_flips(scene, trajectory, truth) == 1
-    assert branch_flips(SCENE, TRUTH, TRUTH) == 0  # a scene of one assembly
+    assert branch_flips(SCENE, TRUTH, TRUTH) == 0  # a scene with only one assembly
 
 
 DISC = Disc()
@@ -172,9 +173,9 @@ LENGTH = DISC.mechanism().length_scale
 INSTANTS = np.linspace(0, 0.2, 21)
 
 
-@dataclass(frozen=True, eq=False)  # its arrays can't be compared or hashed
+@dataclass(frozen=True, eq=False)  # arrays can't be compared or hashed
 class Given(Plain):
-    """An engine that returns a given motion and given sizes of its model."""
+    """An engine that returns the motion `trajectory`."""
 
     trajectory: Trajectory
     variant: str = "given"
@@ -200,20 +201,20 @@ def disc(**changes) -> Trajectory:
 
 
 def shifted(column: int, offset, start: int = 0) -> Trajectory:
-    """The exact poses of the disc plus `offset` in one coordinate from one sample on."""
+    """The exact motion of the disc with `offset` added to one coordinate from the sample `start` on."""
     trajectory = disc()
     trajectory.pose[start:, 0, column] += offset
     return trajectory
 
 
 def test_every_field_of_a_measured_row_has_its_own_value():
-    """Every quantity of the motion has a different error, and each field is computed by hand."""
+    """Each quantity has a different error, so that exchanged fields are detected."""
     t = np.linspace(0, SCENE.duration, SCENE.samples + 1)
     truth = SCENE.motion(t)
     pose, twist, reaction = truth.pose.copy(), truth.twist.copy(), truth.reaction.copy()
     pose[2, 0, 0] += 1e-3  # Gap and position.
     pose[4, 1, 0] += 3e-3  # position.
-    pose[5, 0, 2] += 5e-3  # Drive gap and angle.
+    pose[5, 0, 2] += 5e-3  # these are drive gap and angle
     pose[6, 1, 2] += 7e-3  # angle.
     pose[-1, 1, 2] += 11e-3  # Beyond the horizon.
     twist[7, 1, 0] += 13e-3  # velocity.
@@ -265,7 +266,7 @@ def test_every_field_of_a_measured_row_has_its_own_value():
         "cpu": 0.6 / 0.3,
         "runs": 1,
     }
-    # 7 kg at v(0.07 s) = 0.42 m/s, with 13 mm/s added: the largest energy error of all offsets.
+    # The body of 7 kg has 0.42 m/s at 0.07 s, and 13 mm/s are added. This is the largest error of the energy.
     expected["energy"] = 0.5 * 7 * (0.433**2 - 0.42**2) / (0.5 * 3 * 25 + 0.5 * 7 * 1.8**2)
     reported = result.as_dict()
     assert reported.pop("build") >= 0

@@ -1,4 +1,5 @@
-"""Tests of the compiled Munk2D: it is from the present sources, and it computes the motions of Python's pymunk."""
+"""Tests of the compiled Munk2D: it was compiled from the current sources and computes the motions of Python's
+pymunk."""
 
 from __future__ import annotations
 
@@ -17,9 +18,10 @@ from reports.site.munk2d import COMPILED, SHIM, compiled_from, source_digest
 
 COMPILED_RELEASE, COMPILED_DIGEST = compiled_from(COMPILED.read_text("utf-8"))
 LIVES = {f"{lesson.name}, {live.word}": live for lesson in LESSONS for live in lesson.scenes}
-# Relative difference from Python's pymunk. The polygonal gears amplify rounding by about 1e7 (measured: 3e-7).
+# Largest relative difference from Python's pymunk. Polygonal gears amplify rounding; the measured difference is 3e-7.
 APART = {"gears, two gears": 1e-5}
-# Runs each method of pymunk in the page at its start settings; `window` and `document` make Node a browser.
+# Program for Node that runs each method of pymunk of the page. Node gets the objects `window` and `document` of a
+# browser.
 NODE = """
 globalThis.window = globalThis;
 globalThis.document = {};

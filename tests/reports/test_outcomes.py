@@ -1,4 +1,4 @@
-"""The outcomes of runs: their bounds and their sentences."""
+"""Tests of the bounds and the sentences of outcomes."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) ->
 
 
 def test_the_gravest_defect_determines_the_outcome():
-    """A row with all defects has the gravest outcome; without that defect it has the next one."""
+    """A row with all defects has the gravest outcome; if this defect is removed, it has the next outcome."""
     everything = {"gap": 2 * BLOWN * LENGTH, "drive_gap": 1.0, "flips": 2, "angle": 1.0, "angle_duration": 1.0}
     assert told(disc(reset_at=0.1), 5, **everything) == "reset"
     assert told(disc(), 5, **everything) == "diverged"
@@ -145,7 +145,7 @@ def test_samples_after_the_first_one_that_is_not_finite_are_not_compared():
 def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_theme():
     assert len({outcome.meaning for outcome in Outcome}) == len(Outcome)
     assert [outcome for outcome in Outcome if outcome.comparable] == ["finished", "converged", "plateau"]
-    # On a map the two outcomes with the same letter show a number instead.
+    # CONVERGED has the letter of another outcome, since a map shows numbers for both.
     letters = [outcome.letter for outcome in Outcome if outcome is not Outcome.CONVERGED]
     assert len(set(letters)) == len(letters)
     assert {outcome.colour for outcome in Outcome} <= {field.name for field in fields(Theme)}
@@ -155,7 +155,7 @@ def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_the
 
 
 def test_texts_take_thresholds_from_the_code():
-    """A number that is typed in a text could contradict the threshold in the code."""
+    """If a text contained a threshold as a number, it could contradict the code."""
     assert f"more than {TORN:g} of" in Outcome.TORN.meaning
     assert f"more than {SATURATED:g} rad" in Outcome.SATURATED.meaning
     folder = Path(reports.__file__).parent

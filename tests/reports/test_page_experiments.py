@@ -1,4 +1,4 @@
-"""Experiments of pages: their reference motions, observations and claims; and capabilities of engines."""
+"""Tests of the experiments of pages (reference motions, observations, claims), and of capabilities of engines."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_an_impossible_scene_is_refused():
         ("links is 2", lambda: SpinningRing(links=2)),
         ("skate_on_slope", lambda: SkateOnSlope().motion([-1.0])),
         ("2 points and 3 angles", lambda: HeldBySkates(points=two)),
-        # Two skates never fix a body. Neither do three skates whose axles meet in one point, about which it turns.
+        # Two skates never fix a body. With three skates it can turn about a point in which all axles meet.
         ("leave 1 freedom", lambda: HeldBySkates(points=two, angles=(0.5, -0.5))),
         ("leave 1 freedom", lambda: HeldBySkates(points=(*two, (0.0, 0.4)), angles=(math.pi / 2, math.pi / 2, 0.0))),
     ):
@@ -71,7 +71,7 @@ def test_an_impossible_scene_is_refused():
 
 def test_a_square_reaches_its_corner_at_the_time_that_energy_determines_and_methods_stop_there():
     scene = SquareOnCatenaries()
-    # The last step is shortened, because one of its stages would be beyond the corner.
+    # This is almost the end of the motion, so the last step is shortened.
     corner = scene.motion([scene.corner * (1 - 1e-9)])
     assert corner.pose[0, 0, 2] == pytest.approx(math.pi / 4, abs=1e-8)
     np.testing.assert_allclose(corner.pose[0, 0, 1], 0.0, atol=1e-12)
@@ -92,7 +92,7 @@ def test_errors_of_the_gears_leave_out_undetermined_forces():
 
 def test_round_trip_and_rate_of_centrodes_are_exact_for_the_right_curves_only():
     _, curves = centrodes.exact()
-    # With splines of degree 7 at 400 points over 2 rad, the error of the curves is 1e-10, that of the motion 1e-8.
+    # Splines of degree 7 at 400 points over 2 rad give an error of 1e-10 in the curves, and of 1e-8 in the motion.
     assert max(centrodes.round_trip(curves), centrodes.agreement(curves)) < 1e-8
     wrong = replace(curves, body=curves.body * 1.001)
     assert min(centrodes.round_trip(wrong), centrodes.agreement(wrong)) > 1e-5
@@ -104,7 +104,7 @@ def test_round_trip_and_rate_of_centrodes_are_exact_for_the_right_curves_only():
 SKATE = (Path(skate.__file__).parent / "page.md").read_text(encoding="utf-8")
 
 
-# The programs have orders 2 and 4. With a step of 1e-3 s, their errors are about these bounds.
+# The programs have the orders 2 and 4 and the step 1e-3 s.
 @pytest.mark.parametrize(
     ("program", "bound"), list(zip(re.findall(r"```python\n(.*?)```", SKATE, re.DOTALL), (1e-6, 1e-10), strict=True))
 )
@@ -154,7 +154,7 @@ def test_observations_on_skates_and_wheels_agree_with_the_reference():
     scene = SleighBackwards()
     t = np.linspace(0, scene.duration, scene.samples + 1)
     rate = scene.motion(t).twist[:, 0, 2]
-    # The linearised motion has a relative error of (0.04 / 1.6)^2: 0.04 is in LINEAR_GROWTH, 1.6 is the largest rate.
+    # The relative error of the linearised motion is (0.04 / 1.6)^2, where 1.6 rad/s is the largest rate.
     assert skate.growth_of(t, rate) == pytest.approx(scene.growth_rate(), rel=1e-3)
     assert math.isnan(skate.growth_of(t, np.full_like(t, 1e-3)))
     lines = {seen.method: seen.outcome for seen in skate.counting(Material({}))}
@@ -184,7 +184,7 @@ HOLD = (
 )
 FAIL = (
     'falls("pymunk a")',
-    'falls("pymunk c")',  # a method that was not run
+    'falls("pymunk c")',  # there are no rows of this method
     'stays("pymunk a")',
     'above("pymunk a", "pymunk b")',
     'unresolved("pymunk a") or silent() or estimated("pymunk a")',

@@ -1,4 +1,4 @@
-"""Every page is readable for any set of rows, its links are valid, and its programs run as printed."""
+"""Tests that each page is readable with any set of rows, that its links are valid and that its programs run."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ SUBSETS = 3  # of every page
 FAILED = [outcome for outcome in Outcome if not outcome.comparable]
 NUMBERS = [f.name for f in fields(Measurement) if f.type == "float" and f.name != "step"]
 FROM_ROWS = tuple(page for page in PAGES if shown_cells(page))
-# Texts of clauses that are left out if an error has no plateau.
+# Phrases that a page contains only if an error has a plateau.
 PLATEAU = ("however small the step", "at every step", "(plateau ")
 
 Rows = Mapping[Cell, Measurement]
 
 
 def some(rows: Rows, chance: random.Random) -> Rows:
-    """A random part of the rows, in which some rows have failed and some numbers are NaN."""
+    """A random selection of the rows; some rows are replaced by failures, and some numbers by NaN."""
     remaining = dict(rows)
     for of in (
         lambda cell: cell.engine.name,
@@ -95,7 +95,7 @@ def prose(text: str) -> str:
 
 
 def complaints(page: str, files: Mapping[str, str]) -> list[str]:
-    """The defects of a page: missing numbers, torn sentences, dead links."""
+    """The defects of a page, such as missing numbers, incomplete sentences and dead links."""
     text = prose(files[f"{page}.md"])
     sentences = re.sub(r"^\|.*$", "TABLE", text, flags=re.MULTILINE)
     results = [f"{label} in the text" for label in ("{{", "{%", UNKNOWN_MARK, NOT_MEASURED) if label in text]
@@ -175,7 +175,7 @@ def test_no_clause_is_left_out_if_all_rows_are_there(page, undrawn, monkeypatch)
 
     monkeypatch.setitem(FILTERS, "if_measured", record_clause)
     answers = {task: still(task) for task in all_tasks(page)}
-    # Remarks with a context need the real motions.
+    # Remarks with a context need real motions.
     observed = (
         task
         for failure in page.failures
@@ -215,7 +215,7 @@ def test_a_missing_number_is_marked_and_removes_its_clause(template, said):
     assert without_marks(environment().from_string(template).render(options)) == said
 
 
-# A check in which no setting is accurate enough and one run has failed.
+# Data of a check in which no setting is accurate enough and one run has failed.
 STILL = Pose([[[0.0, 0.0], [1.0, 0.0]]], [], [])
 ERRORS = {"angle": [0.0, 1e-3]}
 SHOWN = PictureData([0.0, 1.0], ERRORS, [0.0, 1.0], ERRORS, [], None, None, 1.0, [[0.0, 0.0]], STILL, STILL)
@@ -232,7 +232,7 @@ WALKED = {
 
 
 def still(task: Task, lost: bool = False) -> Answer:
-    """An invented answer, such as a motion of bodies at rest; with `lost`, its second half is NaN."""
+    """An invented answer; a motion has bodies at rest. With `lost`, the second half of a motion is NaN."""
     values: dict[str, Any]
     match task:
         case Motion(cell=cell):
@@ -272,7 +272,7 @@ def still(task: Task, lost: bool = False) -> Answer:
 
 
 def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Answer]:
-    """Answers to a random part of the tasks, some of which have failed."""
+    """Answers to a random selection of the tasks; some answers are failures."""
     results = {}
     for task in tasks:
         match chance.choice(["missing", "failed", "lost", "still", "still"]):
@@ -288,7 +288,7 @@ def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Ans
 def test_a_motion_that_is_not_finite_is_reported_in_its_line():
     cell = Motion(turning_round.TURNING_ROUND[0]).cell
     material = Material({}, {Motion(cell): still(Motion(cell))})
-    with pytest.raises(ZeroDivisionError):  # a programming error is not an observation
+    with pytest.raises(ZeroDivisionError):  # an exception in the code is raised
         observe(material, cell, "a step", lambda run: f"{1 / 0}")
     missing = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
     [line] = observe(missing, cell, "a step", lambda run: "all is well")
@@ -303,13 +303,13 @@ MECHANISMS = tuple(page for page in FROM_ROWS if page.scenes)
 
 @cache
 def texts(page: Page) -> dict[str, str]:
-    """The Markdown files of a page from the committed rows. The caller needs the fixture `undrawn`."""
+    """The Markdown files of a page, rendered from the committed rows. A caller needs the fixture `undrawn`."""
     return {name: text for name, text in written(page, page_rows(page)).items() if name.endswith(".md")}
 
 
 @cache
 def anchors(file: str) -> frozenset[str]:
-    """The anchors of headings in a page's file. Raises FileNotFoundError for another file."""
+    """The anchors of the headings in a file of the results. Raises FileNotFoundError for an unknown file."""
     page = next((page for page in PAGES if file == page.document), None)
     # The index contains all pages.
     text = (RESULTS / file).read_text(encoding="utf-8") if page is None else texts(page)[file]

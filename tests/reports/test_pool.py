@@ -1,4 +1,4 @@
-"""The pool: every failure of a cell is a row, no row is lost when workers are killed, and a run can be continued."""
+"""Tests of the pool: a failure gives a row, no row is lost when workers are killed, and a run can be continued."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tests.wrong.adapters import Wrong
 
 pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 
-# Action of a job -> (outcome, part of its sentence).
+# Engine of a job -> (outcome, part of the outcome's sentence).
 ENDS = {
     RoughToy("segfault"): ("aborted", "aborted with signal 11 (SIGSEGV)"),
     RoughToy("closes files"): ("aborted", "exit status 1"),
@@ -60,7 +60,7 @@ def test_each_failure_has_its_own_outcome_and_does_not_change_other_cells():
         assert sentence in rows[repr(toy)].sentence
     for toy, index in sound.items():
         assert rows[repr(toy)].angle == pytest.approx(float(index) * cells[0].step ** 2, rel=1e-9)
-    # Run separately, since the other actions need more wall time on a busy machine.
+    # This action is run separately, since the limit of the wall time would be too short for the other actions.
     (row,) = run_cells([Cell(Disc(), RoughToy("native sleep"), 1)], wall=1.0)
     assert (row.outcome, row.sentence) == ("timed out", "did not end within 1 s, and used less than 60 s of CPU time")
 
@@ -70,7 +70,7 @@ def test_a_job_that_changes_its_process_does_not_affect_the_next_job(capfd):
     answers = list(supervise(act, items, limit=60.0, workers=1))
     assert [item for item, *_ in answers] == items
     first, *numbers = [result for item, result, _ in answers if item == "process"]
-    assert numbers[0] == first  # a sound job keeps its process
+    assert numbers[0] == first  # the process of a successful job is used again
     assert len(set(numbers)) == 1 + len(LEAVES)
     assert capfd.readouterr() == ("", "")
 
@@ -93,10 +93,10 @@ def test_a_cell_whose_worker_was_killed_is_tried_once_more_in_a_new_worker(tmp_p
         for row in run_cells(Cell(Disc(), RoughToy(name, folder=str(tmp_path / name)), 1) for name in names)
     }
     assert {row.outcome for row in rows.values()} == {Outcome.FINISHED}
-    # A crash that does not repeat is still a finding about the engine; a kill from outside is not.
+    # A crash is reported even if it does not repeat, since the engine causes it; SIGKILL comes from outside.
     crash = "the first try aborted with signal 11 (SIGSEGV), the second went through"
     assert [rows[name].sentence for name in names] == ["", crash]
-    # Native memory that one item has damaged must not make the next item crash.
+    # If one item has damaged native memory, the next item must not crash.
     answers = supervise(act, ["damage", "damage", "crash where damaged"], limit=60.0, workers=2)
     assert {item: result for item, result, _ in answers} == {"damage": None, "crash where damaged": "sound"}
 
@@ -135,7 +135,7 @@ def test_exit_codes_are_distinguished():
 
 
 class Killer:
-    """Kills workers and the fork server; a seed determines the times and the signals."""
+    """Kills workers and the fork server at random times with random signals."""
 
     def __init__(self, kills: int, monkeypatch: pytest.MonkeyPatch) -> None:
         self.kills = 0
@@ -145,7 +145,7 @@ class Killer:
         monkeypatch.setattr(supervisor, "Pool", lambda *terms: self._pools.append(create(*terms)) or self._pools[-1])
 
     def arm(self) -> None:
-        """Schedule one kill within 0.1 s."""
+        """Schedule a kill within 0.1 s."""
         if len(self._timers) < self._planned:
             way = self._random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV, None])
             timer = threading.Timer(self._random.uniform(0.0, 0.1), self._kill, (way, self._random.random()))
@@ -153,7 +153,7 @@ class Killer:
             self._timers.append(timer)
 
     def _kill(self, how: int | None, which: float) -> None:
-        with contextlib.suppress(ProcessLookupError, ValueError, IndexError):  # any of them may have ended by now
+        with contextlib.suppress(ProcessLookupError, ValueError, IndexError):  # the process may have ended already
             workers = self._pools[0]._workers
             number = fork_server() if how is None else workers[int(which * len(workers))].process.pid
             if number is not None:
@@ -209,7 +209,7 @@ if __name__ == "__main__":
 
 
 def test_workers_end_when_their_parent_is_gone(tmp_path):
-    """Workers end even if their native code holds the interpreter lock."""
+    """One worker sleeps, and native code of the other worker holds the interpreter lock."""
     process = start_script(tmp_path, ORPHANS)
     kinds = ("sleep", "native spin")
     try:
@@ -244,7 +244,7 @@ def test_after_a_kill_the_next_run_continues_where_it_stopped(tmp_path):
         for _ in range(4):
             assert process.stdout.readline().strip()
     process.kill()
-    # A hanging worker must not delay the end; its wall-time limit is eleven minutes.
+    # The end must not wait for the hanging worker, which has a limit of eleven minutes.
     assert process.wait(timeout=60) != 0
     with Store(tmp_path / "cells.sqlite") as store:
         assert missing([Cell(Disc(), Toy(), every) for every in (1, 2, 3, 4)], store) == ()
@@ -285,7 +285,7 @@ def test_a_cell_whose_worker_is_killed_twice_from_outside_is_reported_and_not_st
 
 
 class Aborting(Wrong):
-    """An engine that aborts its process, as native code does after a failed assertion."""
+    """An engine that aborts the process like a failed assertion of native code."""
 
     def build(self, mechanism, dt):
         if dt == 0:

@@ -1,4 +1,4 @@
-"""The programs of recommended settings run as they are printed, and have the errors of the rows."""
+"""Tests that the programs of recommended settings run and have the errors of the rows."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
 
 
 def run(source: str) -> tuple[dict, str]:
-    """The global names of a program after its run, and its output."""
+    """Run a program, and return its global names and its output."""
     names, printed = {"__name__": "__main__"}, io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(compile(source, "a page", "exec"), names)
@@ -58,7 +58,8 @@ def test_a_program_has_the_motion_of_its_method_and_at_most_the_error_of_its_row
         body, *end = re.findall(r"^(.*): x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", message)[0]
         reported = re.findall(rf"^# Exact: {body}: x = (\S+) m, y = (\S+) m, angle = (\S+) rad$", item.text, re.M)[0]
         index = scene.mechanism().body_index(body)
-        # Programs have the scene's numbers with twelve digits; in some seconds the difference grows to a few 1e-11.
+        # Programs contain the scene's numbers with twelve digits; the difference grows to a few 1e-11 during the
+        # motion.
         assert np.asarray(names["end"]) == pytest.approx(trajectory.pose[-1, index], abs=1e-9), item.file
         assert [float(value) for value in end] == pytest.approx(names["end"], abs=1e-10)
         exact = scene.motion([duration]).pose[0, index]

@@ -1,4 +1,4 @@
-"""The pages of published problems and of a user's own model: numbers agree with independent computations."""
+"""Tests of the pages "published" and "your_model": numbers agree with independent computations."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def test_rk4_predicts_the_second_published_number_and_its_states_in_32_bits_the_
     hand = answers[DirectRK4()]
     assert hand.array("drift")[1] == pytest.approx(PUBLISHED[1], rel=0.1)
     assert hand.array("drift")[2] < PUBLISHED[2] / 10
-    # The rounding of states in 32 bits is 2^-24 = 6e-8; relative to the initial energy it is smaller.
+    # States in 32 bits have the rounding error 2^-24 = 6e-8; relative to the initial energy, it is smaller.
     assert PUBLISHED[2] / 3 < hand.array("rounded")[2] < 3 * PUBLISHED[2]
 
 
 def test_mujocos_rk4_has_the_drift_of_gymnasiums_method(answers):
-    """Only the step of 0.2 s is sampled at every step, so only its drift agrees closely."""
+    """The drifts agree closely only at 0.2 s, since only this run has a sample at every step."""
     ours, theirs = answers[DirectRK4()].array("drift"), answers[Acrobot(TUNED)].array("drift")
     assert theirs[0] == pytest.approx(ours[0], rel=1e-9)
     np.testing.assert_allclose(theirs, ours, rtol=1e-2)
@@ -71,7 +71,7 @@ def test_the_rocker_by_freudensteins_equation_agrees_with_the_scene():
 def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none():
     reported = answered(Newton(TRUTH))
     assert all(largest_step(reported, name) == max(NEWTON_STEPS) for name in NEWTON_BOUNDS)
-    # The cosine causes this error: a pendulum that swings by 0.05 rad is slower by 0.05^2/16 than a cosine.
+    # The expected motion is a cosine, but a pendulum with the amplitude 0.05 rad is slower by 0.05^2/16.
     assert reported.array("period") == pytest.approx(1.1e-3, rel=0.05)
     wrong = np.degrees(freudenstein(np.zeros(1)) - NEWTON_FOUR_BAR.motion([0.0]).pose[0, 2, 2] + 0.01)
     assert np.abs(wrong) > NEWTON_BOUNDS["angle"]
@@ -111,7 +111,7 @@ def test_the_page_has_the_results_of_the_checks(checks):
         advised = found(answer)["advised"]
         assert all(text_value in text for text_value in (walk.text.strip(), advised["words"], *advised["lines"]))
     assert text.count(".svg)") == 6
-    soft, hard, swing = (found(checks[walk])["parts"] for walk in MODEL_CHECKS)  # as their titles claim
+    soft, hard, swing = (found(checks[walk])["parts"] for walk in MODEL_CHECKS)  # the titles state these facts
     assert soft["softness"] > 1e-4
     assert (hard["softness"], hard["falling"], swing["divided"]) == (0, True, False)
     assert render_page(YOUR_MODEL, Material({}), "the command")["your_model.md"].count("was not checked yet") == 3

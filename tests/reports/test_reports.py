@@ -1,4 +1,4 @@
-"""Rendering of invented rows: each number from its own row, tables, files, digests and pictures."""
+"""Tests of the rendering of invented rows: numbers, tables, files, digests and pictures."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ PAGE = Page(
 @pytest.fixture(scope="module")
 def material():
     cells = (*sweep_cells(PAGE.scenes, PAGE.engines, QUICK), *PAGE.extra_cells())
-    # Invented timings, so that the same rows are drawn twice.
+    # The timings are invented, so that a picture is the same each time.
     return Material({cell: replace(measure(cell, repeat=False), cpu=1e-3 * cell.every, build=1e-5) for cell in cells})
 
 
@@ -213,6 +213,6 @@ def test_the_animation_of_the_readme_is_small_and_respects_reduced_motion():
     assert len(text.encode()) < 300_000
     still_part, moving_part = text.split("@media (prefers-reduced-motion: no-preference) {")
     assert ("@keyframes" in still_part, "(prefers-color-scheme: dark)" in still_part) == (False, True)
-    # Three engines and the truth, three bars each.
+    # There are three bars in each motion: the exact motion and those of MOVING_METHODS.
     assert len(re.findall(r"@keyframes m\d+b\d+\{", moving_part)) == 3 * (len(MOVING_METHODS) + 1)
     assert moving_picture([Material({}, dict(list(answers.items())[1:]))]) == {}

@@ -1,4 +1,4 @@
-"""No file in the user's current folder is imported instead of a module, and a failed import gives no stored row."""
+"""Tests that no file in the current folder is imported instead of a module, and that a failed import stores no row."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PROGRAM = "import sys; from planar_crosscheck import main; {more}\nif __name__ =
 
 @pytest.fixture
 def hostile(tmp_path):
-    """A folder of modules that write their name into the file `executed` and fail when they are imported."""
+    """A folder with modules that write their names to the file `executed` and raise an exception when imported."""
     for name in HIDDEN:
         path = tmp_path / name / "__init__.py" if name in ("engines", "reports") else tmp_path / f"{name}.py"
         path.parent.mkdir(exist_ok=True)
@@ -56,7 +56,7 @@ def test_python_dash_m_does_not_put_the_current_folder_on_the_path(tmp_path):
 
 
 def test_a_worker_reports_another_package_with_a_name_of_ours(tmp_path):
-    """The path changes after the parent has imported our package, so that a new worker would import the other one."""
+    """The path changes after the parent has imported our package, so a new worker finds the other package first."""
     (tmp_path / "engines").mkdir()
     (tmp_path / "engines" / "__init__.py").write_text("")
     more = f"import reports.cli.commands, engines.registry; sys.path.insert(0, {str(tmp_path)!r})"

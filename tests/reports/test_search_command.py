@@ -163,7 +163,8 @@ def differences(text: str, folder: Path) -> list[float]:
 
 
 def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -> str:
-    """The script of the first case from `number` on that has all kinds and a script."""
+    """The script of the first case, from `number` on, that has all these kinds and for which a script can be
+    written."""
     if engine.missing:
         pytest.skip(engine.missing)
     texts = (write_script(Adapted(engine), case, check, number) for case in cases_with(engine, kinds, number))
@@ -171,13 +172,13 @@ def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -
 
 
 def cases_with(engine: Engine, kinds: tuple[str, ...], first: int = 0) -> list[Recipe]:
-    """The cases with all of these kinds among twenty."""
+    """Those of twenty cases from `first` on that have all these kinds."""
     drawn = [Adapted(engine).draw(SEED, number, kinds, 0) for number in range(first, first + 20)]
     return [case for case in drawn if set(kinds) <= set(case.kinds)]
 
 
 @pytest.mark.parametrize(
-    ("engine", "kinds", "falls"),  # falls: smallest factor by which half the step reduces the error
+    ("engine", "kinds", "falls"),  # `falls`: least factor by which half the step reduces the error
     [
         (pymunk.DEFAULT, ("pin", "spring"), 1.4),
         (mujoco.TUNED, ("pin", "damper"), 4.0),
@@ -224,7 +225,7 @@ def test_a_method_with_our_code_in_every_step_and_an_engine_without_scripts_give
 def test_the_missing_velocity_term_of_curved_equalities_is_found_reduced_and_written_as_a_script(
     tmp_path: Path,
 ) -> None:
-    """MuJoCo up to 4.0.1 omits the term. The reduced model has one equality and at most two bodies."""
+    """MuJoCo up to 4.0.1 omits the velocity term. The reduced model has one equality and at most two bodies."""
     subject = Alone()
     models = ((n, mujoco_alone.draw_model(SEED, n, ("joint",))) for n in range(20))
     number, case = next((n, model) for n, model in models if subject.ask(model, n, ("instant",)).faults)

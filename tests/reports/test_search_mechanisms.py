@@ -26,8 +26,7 @@ from reports.search.parts import (
 from reports.search.recipe import DEPENDENCE_LIMIT, SINGULAR_LIMIT, build, dependence
 
 CASES = range(40)
-# The digest of the recipes in the first test. A change of it means that published seeds no longer give the same
-# mechanisms.
+# Digest of the recipes in the first test. If it changes, published seeds give other mechanisms than before.
 DIGEST = "a70ba875a1348f267414ef4ca0cc7f05393aa4b0745440069cc1fdfeeff82ed7"
 
 
@@ -80,12 +79,13 @@ def test_poses_velocities_inertias_and_accelerations_scale_with_the_units(kind):
         drawing = recipe(8, number, FIRST_KINDS if kind == "all" else ("pin", kind))
         plain, scaled = build(drawing), build(replace(drawing, decades=(-3, 2, 1)))
         assert np.allclose(scaled.pose, plain.pose * [1e-3, 1e-3, 1], rtol=1e-12, atol=1e-15)
-        # The solution for the velocities has an error of rounding times the condition number of the rows.
+        # The error of the velocities is rounding times the condition number of the rows.
         speed = np.abs(plain.twist[:, 2]).max() + np.abs(plain.twist[:, :2]).max() + 1
         assert np.allclose(scaled.twist, plain.twist * [1e-4, 1e-4, 0.1], rtol=1e-9, atol=1e-12 * speed)
         assert np.allclose(scaled.inertias, plain.inertias * [1e2, 1e2, 1e-4], rtol=1e-12)
         earlier, later = (single.unconstrained(single.pose, single.twist) for single in (plain, scaled))
-        size = np.array([1e-5, 1e-5, 1e-2])  # scales of accelerations: 1e-3 / 10^2 for m/s^2, 1 / 10^2 for rad/s^2
+        # accelerations in m/s^2 change by 1e-3 / 10^2, those in rad/s^2 by 1 / 10^2
+        size = np.array([1e-5, 1e-5, 1e-2])
         largest = np.abs(earlier).max(axis=(0, 1)) + np.abs(plain.twist).max() + 1
         assert np.allclose(later / size, earlier, rtol=1e-9, atol=1e-11 * largest)
         if plain.length_scale != 1:  # 1 m is the default scale of a mechanism without lengths

@@ -82,7 +82,7 @@ def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, 
 
 @pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.slow) for part in range(1, 8))])
 def test_earlier_false_positives_are_no_findings(part: int) -> None:
-    """The cases in search_seeds.csv have a large error by rounding, a declared compliance or a solver tolerance."""
+    """The errors in the cases of search_seeds.csv come from rounding, a declared compliance or a solver's tolerance."""
     rows = list(csv.DictReader((HERE / "search_seeds.csv").read_text(encoding="utf-8").splitlines()))
     judged = 0
     for row in rows[part::8]:
@@ -162,7 +162,7 @@ def _other_way(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _faster(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An error of three times the tolerance."""
+    """Give the recorded velocities an error of three times the tolerance."""
     right = pymunk_declared.record
 
     def off(*arguments: Any, **named: Any) -> Any:
@@ -175,7 +175,7 @@ def _faster(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("engine", "kinds", "mistake", "check"),
     [
-        (EXTENDED, ("slot",), _changed_row(_flipped_sign), "raised"),  # a row that the mechanism does not have
+        (EXTENDED, ("slot",), _changed_row(_flipped_sign), "raised"),  # the mechanism does not have this row
         (EXTENDED, ("slot",), _changed_row(_flipped_velocity_term), "acceleration"),
         (EXTENDED, ("pin", "rod"), _without_velocity_term, "acceleration"),
         (DEFAULT, ("pin",), _late_reaction, "reaction"),
@@ -243,7 +243,8 @@ def test_a_groove_off_the_centre_of_mass_fails_and_obeys_the_law_on_the_page_of_
 
 @dataclass(frozen=True)
 class Beside(EngineWrapper):
-    """An engine with an error `speed` of all velocities along x; `declares`: whether `stricter` has no such error."""
+    """An engine with the error `speed` in all velocities along x. `declares`: whether `stricter` returns the right
+    engine."""
 
     engine: Any
     variant: str = "off"
@@ -268,7 +269,8 @@ def test_the_residual_of_a_solver_is_no_fault_if_the_engine_declares_a_stricter_
 
 
 def test_a_constant_declared_compliance_skips_the_check_and_one_that_falls_with_the_step_does_not() -> None:
-    """MuJoCo's compliance in a loop of pins is constant by default, and falls as the square of the step if tuned."""
+    """The compliance of a loop of pins is constant in MuJoCo's default, and falls as the square of the step in
+    "tuned"."""
     shipped, tuned = (results(engine, ("pin",), 8, "motions") for engine in (DEFAULT, TUNED))
     soft = [any("give way" in reason for reason in result.skipped) for result in shipped]
     assert any(soft)
@@ -279,7 +281,8 @@ def test_a_constant_declared_compliance_skips_the_check_and_one_that_falls_with_
 
 @dataclass(frozen=True)
 class Boasting(Lagrange):
-    """A method of first order that declares the fourth; `warns`: in "fine" runs, in "coarse" runs, or never."""
+    """A method of first order that declares order 4. `warns`: which runs have a warning: "fine", "coarse", or "" for
+    none."""
 
     warns: str = ""
 

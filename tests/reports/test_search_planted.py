@@ -18,9 +18,9 @@ from reports.search.relations import RELATIONS
 from reports.search.release import BESIDE_CURVED, CURVED, check_accelerations, process_of
 
 SEED = 1
-# Sizes of faults that Box2D's single precision does not hide; the tolerance between two descriptions is 1e4 roundings.
+# Sizes of faults in Box2D, which has single precision; the tolerance between two descriptions is 1e4 roundings.
 SINGLE: dict[str, float] = dict.fromkeys(RELATIONS, 1e-2) | {"in other masses": 1e-1}
-PARTS = 6  # number of parts of the faults; the slow tests have all parts, the other tests one part for each adapter
+PARTS = 6  # number of groups of faults; a test that is not slow has one group for each adapter
 ADAPTERS = [name for name in CONTROL_ENGINES if name != "mjx"]
 
 

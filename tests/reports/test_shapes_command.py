@@ -1,4 +1,4 @@
-"""`crosscheck shapes`: the files for a known motion, the example on the page, and refusals of bad input."""
+"""Tests of `crosscheck shapes`: the files for a known motion, the example on the page, and refusals of bad input."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ EVERY_KIND = ("--kind", "csv", "--kind", "svg", "--kind", "dxf")
 
 
 def ladder(count=101, low=0.2, high=1.3):
-    """A ladder of 1 m that slides down a wall; its shapes are Cardan's circles with radii of 1 m and 1/2 m."""
+    """The motion of a ladder of 1 m that slides down a wall. Its shapes are Cardan's circles with the radii 1 m and 0.5
+    m."""
     t = np.linspace(low, high, count)
     return np.column_stack([t, 0.5 * np.cos(t), 0.5 * np.sin(t), -t])
 
@@ -43,8 +44,8 @@ def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, ca
     space = np.array([[float(row["space_x"]), float(row["space_y"])] for row in rows])
     body = np.array([[float(row["body_x"]), float(row["body_y"])] for row in rows])
     assert len(rows) == 50
-    # Splines of degree 7 through poses 0.01 rad apart have an error of 0.01**8, so that rounding remains, 1e-11 after
-    # one derivative.
+    # The error of splines of degree 7 is 0.01**8 if poses are 0.01 rad apart. Rounding is larger, 1e-11 in a first
+    # derivative.
     np.testing.assert_allclose(np.linalg.norm(space, axis=-1), 1.0, rtol=0, atol=1e-9)
     np.testing.assert_allclose(np.linalg.norm(body, axis=-1), 0.5, rtol=0, atol=1e-9)
     layers = {line.dxf.layer: line for line in readfile(folder / "ladder_shapes.dxf").modelspace()}
@@ -79,7 +80,7 @@ def test_existing_files_are_replaced_only_with_force_and_links_are_not_followed(
 def test_a_coarse_table_gives_a_warning_and_a_fine_one_does_not(tmp_path, capfd):
     for count, coarse in ((101, False), (17, True)):
         t = np.linspace(0, 1.2, count)
-        # 17 poses are too few for a wobble of 8 rad/s.
+        # A wobble of 8 rad/s needs more than 17 poses.
         table = np.column_stack([t, 0.3 * np.cos(8 * t), 0.1 * np.sin(8 * t), -3 * t])
         (tmp_path / "motion.csv").write_text(as_text(table))
         assert call("shapes", tmp_path / "motion.csv", "--folder", tmp_path, "--force") == 0

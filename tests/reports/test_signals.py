@@ -1,4 +1,4 @@
-"""After a signal no temporary folder or process remains, no traceback is printed, and finished rows are stored."""
+"""Tests of signals: no temporary folder or process remains, no traceback is printed, and finished rows are stored."""
 
 from __future__ import annotations
 
@@ -88,7 +88,8 @@ runpy.run_module("reports", run_name="__main__", alter_sys=True)
 """
 
 
-@pytest.mark.parametrize("moment", [5, 300])  # before the program's own modules, and while compiled ones are imported
+# import 5 precedes the program's modules, and import 300 is of a compiled module
+@pytest.mark.parametrize("moment", [5, 300])
 def test_ctrl_c_during_an_import_gives_exit_status_130_without_a_message(moment):
     process = subprocess.run(
         [sys.executable, "-c", INTERRUPTS_ITSELF, str(moment), "run", "no_scene"],
@@ -101,7 +102,7 @@ def test_ctrl_c_during_an_import_gives_exit_status_130_without_a_message(moment)
 
 
 def test_ctrl_c_during_a_run_reports_the_number_of_stored_cells(tmp_path):
-    """As on a terminal, the whole process group gets the signal, and workers must not print a traceback."""
+    """The signal is sent to the whole process group, as by a terminal. Workers must not print a traceback."""
     text = ["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--results", str(tmp_path)]
     process = subprocess.Popen(
         [sys.executable, "-m", "reports", *text, "--every", "1", "--every", "2", "--every", "30000"],
@@ -148,7 +149,7 @@ def test_a_delayed_ctrl_c_raises_when_checked_at_the_second_and_when_the_context
                 leaving.close()
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         with interruption.delayed_signals() as check, interruption.ending_at_once():
-            signal.raise_signal(signal.SIGINT)  # ignored, as for a job in the background
+            signal.raise_signal(signal.SIGINT)  # the signal is ignored, as in a background job
             check()
     finally:
         signal.signal(signal.SIGINT, earlier)

@@ -84,7 +84,7 @@ def test_the_forces_at_the_coupler_sum_to_mass_times_acceleration():
     acceleration = (dense.twist[2] - dense.twist[0]) / 2e-5
     coupler = mechanism.bodies[1]
     wanted = coupler.mass * (acceleration[1, :2] - np.array(mechanism.gravity))
-    # The force at C acts on the rocker. The coupler gets the opposite force.
+    # The force at C acts on the rocker. The coupler has the opposite force.
     assert by_joint["B"][1] - by_joint["C"][1] == pytest.approx(wanted, rel=1e-6)
 
 
@@ -197,7 +197,7 @@ HOWTOS = sorted((ROOT / "reports" / "site" / "howto").glob("*.md"))
 @pytest.mark.parametrize("path", HOWTOS, ids=lambda path: path.stem)
 def test_the_code_of_a_how_to_page_runs(path, capsys, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", path.read_text("utf-8"), re.DOTALL)
-    module = ModuleType("howto")  # dataclasses need the module of a class
+    module = ModuleType("howto")  # dataclasses look up the module of a class
     monkeypatch.setitem(sys.modules, "howto", module)
     namespace: dict[str, Any] = vars(module)
     for block in blocks:
@@ -221,7 +221,7 @@ def test_every_stored_row_has_its_cost_and_settings():
     assert len(rows) > 500
     free = ("free_four_bar", "pymunk", "default")
     (row,) = [r for r in rows if (r["scene"], r["engine"], r["variant"]) == free and abs(r["step"] - 1e-3) < 1e-6]
-    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # the value on the page of the four-bar
+    assert row["angle"] == pytest.approx(0.19, rel=0.1)  # the page of the four-bar has this value
     assert row["cpu"] > 0
     assert "Pymunk(" in row["settings"]
 
@@ -244,7 +244,8 @@ def falling() -> Shown:
 
 
 def keys(text: str, label: str) -> np.ndarray:
-    """(key frames, 4): time [percent of a repetition], displacement right and down [pt], rotation [degrees]."""
+    """Key frames (n, 4): time [% of a repetition], displacements to the right and downwards [pt], rotation
+    [degrees]."""
     rule = re.search(rf"@keyframes {label}{{(.*?)}}}}", text)
     assert rule is not None
     pattern = r"([\d.]+)%{transform:translate\(([-\d.]+)px,([-\d.]+)px\) rotate\(([-\d.]+)deg\)"
@@ -259,7 +260,7 @@ def test_key_frames_of_the_exact_motion_and_of_each_method_are_their_poses(falli
             places = keys(text, f"m{index}b{body}")[:-1]
             frames = np.interp(places[:, 0] / 100 / (1 - PAUSE) * falling.t[-1], falling.t, np.arange(len(falling.t)))
             expected = (pose[frames.round().astype(int), body] - pose[0, body]) * (1, -1, -180 / np.pi)
-            # Times are rounded to a hundredth of a percent, and the expected pose to the nearest frame.
+            # Times are rounded to 0.01 %, and the expected pose is that of the nearest frame.
             assert np.abs(places[:, 3] - expected[:, 2]).max() < 2.0
             scales.append(np.vdot(places[:, 1:3], expected[:, :2]) / np.vdot(expected[:, :2], expected[:, :2]))
             assert np.abs(places[:, 1:3] / scales[-1] - expected[:, :2]).max() < 0.02

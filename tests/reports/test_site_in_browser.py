@@ -36,16 +36,14 @@ __all__ = ["address", "chromium", "files", "opened", "running"]
 
 
 def marked(*arguments: Any) -> Any:
-    """Return parameters that begin with the name of a lesson; marked slow unless it is in QUICK."""
+    """Return parameters of a test; it is marked slow unless the first parameter, a lesson, is in QUICK."""
     return pytest.param(*arguments, marks=() if arguments[0] in QUICK else pytest.mark.slow)
 
 
 SCENES = [marked(lesson.name, live.word) for lesson in LESSONS for live in lesson.scenes]
-# Largest difference between an engine in the page and in Python, relative to the size of the motion. Measured
-# differences are 1e-17 to 1e-13, since releases and compilers differ. Some motions amplify rounding. The measured
-# differences are 5e-8 for the car, 2e-11 for the skate, 8e-10 for the heavy slider, 4e-9 for the ellipse and 3e-7 for
-# polygonal gears. The contact of two ellipses has 1.3e-2, since MuJoCo's iteration ends at ccd_tolerance (1e-6) and
-# depends on the release.
+# Largest difference between an engine in the page and in Python, relative to the size of the motion. Differences are
+# below 1e-13 unless a motion amplifies rounding. The largest measured difference is 3e-7, in polygonal gears. With two
+# ellipses it is 1.3e-2, because MuJoCo's collision iteration ends at ccd_tolerance (1e-6).
 APART = {"gears": 5e-2, "rolling": 1e-7, "wheels": 1e-6, "skate": 1e-9, "slider_crank": 1e-8}
 MUNK_APART = {"gears": 1e-5}
 
@@ -76,21 +74,21 @@ def test_the_engines_in_the_page_compute_the_motions_of_python(running, lesson, 
     every = round(scene.duration / step) // samples
     truth = scene.motion(np.arange(samples + 1) * (scene.duration / samples)).pose
     size = max(1.0, float(np.abs(truth).max()))
-    # The page estimates the error of its integration, by a factor of about ten too large.
+    # The page overestimates the error of its integration by a factor of about ten.
     missed = answer["exact"]["missed"] or 0.0
     assert np.abs(np.reshape(answer["exact"]["pose"], truth.shape) - truth).max() < missed + 1e-12 * size
     assert missed < 1e-5
     for name, method in engines.items():
         try:
             python = method.build(scene.mechanism(), step)(samples, every)
-        except (Unsupported, AttributeError):  # AttributeError: the engine is a string
+        except (Unsupported, AttributeError):  # AttributeError means that the engine is a string
             assert name in answer["lost"]
             continue
         if name in answer["lost"]:
             assert re.search("needs Python code in every step|writes rows while it steps", answer["lost"][name])
             continue
         page = np.reshape(np.array(answer["motions"][name]["pose"], dtype=float), python.pose.shape)
-        is_missing = np.isnan(page)  # MuJoCo has reset the motion, or the motion has diverged
+        is_missing = np.isnan(page)  # NaN means that MuJoCo has reset the motion or that it diverged
         is_compared = ~is_missing & np.isfinite(python.pose)
         assert np.array_equal(is_missing, ~np.isfinite(python.pose) | (np.abs(python.pose) > 1e6))
         difference = np.abs(page - python.pose)[is_compared].max() / max(
@@ -139,14 +137,14 @@ def test_a_mechanism_that_the_reader_releases_moves_as_in_python(running, lesson
     assert answer["exact"]["missed"] < 1e-8
     python = pymunk.DEFAULT.build(released, step)(samples, steps // samples).pose
     assert np.abs(np.reshape(answer["motions"]["munk"]["pose"], python.shape) - python).max() < 1e-9
-    # MuJoCo's stiffness of a loop depends on the pose at which the model is compiled, so Python's motion differs.
+    # The stiffness of MuJoCo's loops depends on the pose at which a model is compiled, so Python's motion differs.
     tuned = run_engines(page, lesson, word, {"mujoco": DOCUMENTED}, start.ravel().tolist())
     assert np.abs(np.array(tuned["motions"]["mujoco"]["pose"][: start.size]) - start.ravel()).max() < 1e-12
     assert tuned["motions"]["mujoco"]["error"] < 0.01 < answer["motions"]["mujoco"]["error"] < 3
 
 
 def test_a_dragged_linkage_stays_closed(opened):
-    page = opened("lessons/four_bar.html", reduced_motion="reduce")  # the motion does not start by itself
+    page = opened("lessons/four_bar.html", reduced_motion="reduce")  # the animation does not start
     page.wait_for_selector("#lesson.ready")
     pin = page.locator(".motion.truth .body").nth(1).locator("circle").first.bounding_box()
     page.mouse.move(pin["x"] + pin["width"] / 2, pin["y"] + pin["height"] / 2)
@@ -186,7 +184,7 @@ def test_springs_of_mujoco_follow_the_sliders_and_sliders_without_effect_are_dis
     python = engine.build(live.scene.mechanism(), step)(live.frames, live.steps[live.start] // live.frames)
     assert np.abs(np.reshape(answer["motions"]["mujoco"]["pose"], python.pose.shape) - python.pose).max() < 1e-12
     assert answer["idle"] == []
-    # pymunk's default has no skate. MuJoCo's capsule has a contact, so its settings have an effect.
+    # pymunk's default can't build a skate, so its settings have no effect; MuJoCo's settings affect a contact.
     assert set(run_engines(running("skate"), "skate", "the sleigh", {})["idle"]) == {"iterations", "bias"}
     other = run_engines(running("skate"), "skate", "the sleigh", {"munk": NAIVE, "mujoco": DOCUMENTED})
     assert {"iterations", "bias", "integrator", "timeConstant"} <= set(other["idle"])
@@ -280,7 +278,7 @@ def test_tables_are_sorted_and_filtered_and_the_address_stores_the_choice(opened
     page = opened("results/rows.html")
     page.wait_for_selector("html[data-ready]")
     methods = set(page.locator("#rows tbody td:nth-child(2)").all_inner_texts())
-    assert methods == {"as shipped", "documented settings", "with our code"}  # the methods that are shown first
+    assert methods == {"as shipped", "documented settings", "with our code"}  # these methods are shown initially
     page.locator("input[name=all]").check()
     page.reload()
     page.wait_for_selector("html[data-ready]")
@@ -294,5 +292,5 @@ def test_tables_are_sorted_and_filtered_and_the_address_stores_the_choice(opened
 
 def test_the_compressed_size_of_the_site_is_limited(files):
     assert compressed_size(files) < 6_000_000
-    engines = ("packages/munk2d", "packages/mujoco", "live/")  # only lessons load these
+    engines = ("packages/munk2d", "packages/mujoco", "live/")  # only lessons load these files
     assert compressed_size({name: text for name, text in files.items() if not name.startswith(engines)}) < 2_500_000

@@ -69,7 +69,7 @@ def test_a_method_with_python_code_in_every_step_is_refused():
 
 
 def records(engine: Any, scene: Any) -> tuple[tuple[float, ...], np.ndarray, list[tuple[float, ...]]]:
-    """The head, the bodies and the records of the list of numbers."""
+    """The global numbers of a space, its bodies (bodies, 11) and its records."""
     plan = space_of(engine, scene.mechanism(), scene.duration).numbers
     position, out = 8 + 11 * int(plan[4]), []
     while position < len(plan):

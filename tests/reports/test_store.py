@@ -1,4 +1,4 @@
-"""The store: rows are read unchanged; a damaged, locked or foreign file is refused in one sentence or renamed."""
+"""Tests of the store: rows are read unchanged; a damaged, locked or foreign file is refused or renamed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ CELLS = [Cell(Disc(), Toy(), every) for every in range(1, 41)]
 
 
 def row(cell: Cell):
-    """A row like that of a run; each has different numbers, and is so long that the file has many pages."""
+    """A row of a cell with different numbers for each cell; its long sentence makes the file have many pages."""
     return replace(blank(cell, Outcome.FINISHED, "a sentence " * 40), angle=1e-3 * cell.every, flips=cell.every)
 
 
@@ -60,7 +60,7 @@ def test_stored_rows_are_returned_unchanged_and_the_last_row_of_a_cell_is_used(t
         assert list(result) == CELLS[2::-1]
         assert math.isnan(result[CELLS[0]].energy)
         assert replace(result[CELLS[0]], energy=0.0) == replace(put, energy=0.0)
-        experiment = replace(CELLS[0], purpose="failure")  # it takes the row of the sweep
+        experiment = replace(CELLS[0], purpose="failure")  # this cell uses the row of the sweep
         assert [item.purpose for item in store.get([experiment]).values()] == ["failure"]
     with Store.read(path) as store:
         assert store.load_references() == ("second", "first", "third")
@@ -81,12 +81,12 @@ def test_reading_writes_no_file_and_includes_the_rows_of_a_run_in_progress(tmp_p
 def rewritten(path, text):
     """Replace the stored text of the first cell."""
     with closing(sqlite3.connect(path)) as connection, connection:
-        value = "cast(? as text)" if isinstance(text, bytes) else "?"  # bytes that are no text, where a text should be
+        value = "cast(? as text)" if isinstance(text, bytes) else "?"  # the bytes are not valid text
         connection.execute(f"update results set row = {value} where key = ?", (text, CELLS[0].key))
 
 
 def altered(**changes):
-    """The text of a row with changed values; None removes a value."""
+    """The JSON of a row with changed values; a value of None is left out."""
     values = {**row(CELLS[0]).as_dict(), **changes}
     return json.dumps({name: value for name, value in values.items() if value is not None})
 

@@ -1,4 +1,4 @@
-"""Tasks: the pool runs and stores them, and a report reads their answers without running an engine."""
+"""Tests of tasks: the pool runs and stores tasks, and a report reads answers without running an engine."""
 
 from __future__ import annotations
 
@@ -126,13 +126,13 @@ def answers(page: Page) -> dict[Task, Answer]:
     return {task: answer_to(task) for task in all_tasks(page)}
 
 
-@pytest.mark.parametrize("name", ["centrodes", "scaling"])  # with motions, observations and referees; rows alone
+@pytest.mark.parametrize("name", ["centrodes", "scaling"])  # "centrodes" has tasks, "scaling" has only rows
 def test_a_page_is_written_without_engines(name, monkeypatch):
     [page] = [page for page in PAGES if page.name == name]
     material = Material({}, answers(page))
     for kind in {type(engine) for engine in known_engines(PAGES)}:
         monkeypatch.setattr(kind, "build", None)
-    # A figure or a table in a cache in memory would hide the use of an engine.
+    # A figure or a table in a cache would hide that an engine is used.
     for value in list(vars(__import__(page.context.__module__, fromlist=["context"])).values()):
         if isinstance(value, functools._lru_cache_wrapper):
             value.cache_clear()

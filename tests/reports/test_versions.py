@@ -1,4 +1,4 @@
-"""Versions and builds of an engine: their installation, their runs in separate processes, their comparison and page."""
+"""Tests of versions and builds of an engine: installation, runs in separate processes, comparison, and the page."""
 
 from __future__ import annotations
 
@@ -150,7 +150,7 @@ def test_the_verdict_on_a_method_follows_its_outcome_before_its_error(capsys, be
 def test_random_trees_distinguish_ideal_constraints_from_wrong_ones():
     three_trees = trees(6, 2, 3)
     assert len({tree.pose.tobytes() for tree in three_trees}) == 3
-    # Two formulations of the ideal joints differ only by the error of a step of 1e-5 of the time scale.
+    # Two formulations of ideal joints differ only by the error of a step, which is 1e-5 of the time scale.
     assert max(miss(Lagrange("rk4"), tree) for tree in three_trees) < 1e-3
     # With default settings the error of a constraint's acceleration is about a tenth of the ideal acceleration.
     assert min(miss(DEFAULT, tree) for tree in three_trees) > 1e-2
@@ -174,7 +174,7 @@ def test_the_page_counts_changes_and_names_the_documented_ones(monkeypatch):
 
 
 def toy(folder: Path, version: str, source: str) -> Path:
-    """Write a folder like one of pip with a version of an engine whose error is `error()` times the step squared."""
+    """Write an installed package of a toy engine. Its error is `error()` of `source` times the step squared."""
     index = folder / version
     (index / "toyengine").mkdir(parents=True)
     (index / "toyengine" / "__init__.py").write_text(source)
@@ -186,13 +186,13 @@ def toy(folder: Path, version: str, source: str) -> Path:
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """The current folder of the commands, with an adapter and a scene."""
+    """The current folder, which contains an adapter and a scene."""
     (tmp_path / "adapter.py").write_text(ADAPTER)
     (tmp_path / "scene.py").write_text("from tests.toys import Disc\nDISC = Disc()\n")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(installation.CACHE, str(tmp_path / "cache"))
     monkeypatch.setattr(sys, "path", list(sys.path))
-    for name in ("adapter", "scene"):  # They are modules of another test's folder.
+    for name in ("adapter", "scene"):  # another test may have imported modules with these names
         monkeypatch.delitem(sys.modules, name, raising=False)
     yield tmp_path
     for name in ("adapter", "scene"):
@@ -220,7 +220,7 @@ def test_a_worse_or_slower_build_is_reported_and_its_output_is_contained(here, c
         invoke(["compare", "1.0", "2.0", *WITH_ADAPTER])
     out = capfd.readouterr().out
     assert "noise" not in out
-    assert out.count("WORSE") == 1  # There is a line for each method.
+    assert out.count("WORSE") == 1  # each method has one line
     assert len(re.findall(r"^disc .* angle \[rad\]", out.partition("outcomes that are worse")[2], re.MULTILINE)) == 3
     with pytest.raises(Broken):
         invoke(["compare", "1.0", "2.0", *WITH_ADAPTER, "--json"])
@@ -231,11 +231,11 @@ def test_a_worse_or_slower_build_is_reported_and_its_output_is_contained(here, c
     assert (line["verdict"], document["status"]) == ("WORSE", 1)
     assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
-    assert not (here / "crosscheck-results").exists()  # Rows of a build are not stored, since the build may change.
-    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # Call it as a notebook does.
+    assert not (here / "crosscheck-results").exists()  # rows of a build are not stored, since the build may change
+    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # a notebook makes this call
     assert [column.trouble for column in comparison.columns] == ["", ""]
     assert comparison.complaint == ""
-    # The stated cost of a toy does not depend on its run.
+    # The ratio of CPU times is 1, since the toy returns a constant cost.
     assert invoke(["compare", "2.0", "1.0", *WITH_ADAPTER, "--cost", "1.5"]) == 0
     with pytest.raises(Broken, match=r"toyengine default takes 1\.00 times the CPU time, and --cost is 0\.9"):
         invoke(["compare", "2.0", "1.0", *WITH_ADAPTER, "--cost", "0.9"])
@@ -257,7 +257,7 @@ def test_a_build_has_the_version_of_its_metadata_and_not_of_its_module(tmp_path)
 
 
 class Pip:
-    """A substitute for pip without network: prints the text for a requirement, or writes the folder."""
+    """A substitute for pip, which prints the text for a requirement or writes the folder."""
 
     def __init__(self, answers):
         self.answers, self.calls = answers, []
@@ -285,7 +285,8 @@ def test_a_version_is_installed_once_under_the_first_name_that_has_it(here, monk
     assert installed(("mujoco-core", "mujoco"), "3.6.0") == first
     assert pip.calls == ["mujoco-core==3.6.0", "mujoco==3.6.0"]
     assert first.is_relative_to(here / "cache")
-    assert first.name == "site-packages"  # With this name, rows depend on the version and not on the files.
+    # in a folder of this name, the key of a row has the version instead of the files
+    assert first.name == "site-packages"
     assert [path.name for path in first.parents[1].iterdir()] == ["mujoco-3.6.0"]
 
 
@@ -304,7 +305,7 @@ def test_a_version_that_can_not_be_installed_is_refused_in_one_line(printed, rea
         invoke(["versions", "pymunk", "7.2.5", "--scenes", "free_four_bar"])
     assert "\n" not in str(refused.value)
     assert refused.value.status == 2
-    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # It is printed before pip runs.
+    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # this is printed before pip runs
     assert not (here / "crosscheck-results").exists()
 
 

@@ -1,4 +1,4 @@
-"""The lines to copy on the page `your_loop` reduce the errors of models with default settings to those on the page."""
+"""Tests that the lines on the page `your_loop` reduce the errors of default models to the errors on the page."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -88,7 +88,7 @@ CASES = {case.scene.name: (case, other) for case, other in zip(page.MUJOCO_CASES
 def test_the_lines_for_a_compiled_mujoco_model_give_the_published_error(scene):
     case, _ = CASES[scene.name]
     shipped = MJCF.write(scene.mechanism(), STEP, "default")
-    # rel=0.02: the solver's tolerance and the rounding of numbers in the file are far below the error of RK4.
+    # The error of RK4 is far above the solver's tolerance and the rounding of numbers in the file.
     assert in_mujoco(scene, shipped, lines("compiled")) == pytest.approx(row(case, case.after), rel=0.02)
 
 
@@ -113,7 +113,7 @@ def test_the_contact_pair_of_a_rolling_disc_gives_the_published_error():
 def test_the_lines_for_pymunk_give_the_published_error(scene):
     _, case = CASES[scene.name]
     shipped, closed = in_pymunk(scene, ""), in_pymunk(scene, page.PYMUNK_LINES)
-    # rel=0.2: the number of iterations follows from a convergence factor in the row, and from trials in `choose`.
+    # The tolerance is 20 %, since the row and `choose` determine the number of iterations differently.
     assert closed == pytest.approx(row(case, case.after), rel=0.2)
     assert closed < shipped / 8
 
@@ -140,7 +140,7 @@ def test_the_lines_for_pymunk_increase_the_gaps_of_no_linkage(linkage, step):
     if names["choose"](make(), step) is None:
         assert state(space) == state(make())
     else:
-        # `choose` requires gaps of a quarter, but only during its trials, which are shorter than this motion.
+        # In the trials of `choose` the gaps fall to a quarter or less, but this motion is longer than the trials.
         assert worst_gap(space, names["gaps"], step) < worst_gap(make(), names["gaps"], step)
 
 

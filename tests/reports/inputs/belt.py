@@ -1,4 +1,4 @@
-"""After https://github.com/bulletphysics/bullet3/issues/3283: a belt, as a gear of ratio 1 on a moving arm; mm."""
+"""A belt as a gear of ratio 1 on a moving arm, after https://github.com/bulletphysics/bullet3/issues/3283 (in mm)."""
 
 import math
 

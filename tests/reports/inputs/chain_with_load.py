@@ -1,4 +1,4 @@
-"""After https://github.com/schteppe/p2.js/issues/164: a chain with a heavy load stretches; pixels."""
+"""A chain with a heavy load stretches, after https://github.com/schteppe/p2.js/issues/164 (in pixels)."""
 
 import pymunk
 

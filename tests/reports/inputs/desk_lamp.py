@@ -1,4 +1,4 @@
-"""After https://github.com/viblo/pymunk/issues/232: a pivot and a limit of 0 to 0 as a fixed joint; a desk lamp."""
+"""A desk lamp with a pivot and a limit of 0 to 0 as a fixed joint, after https://github.com/viblo/pymunk/issues/232."""
 
 import pymunk
 

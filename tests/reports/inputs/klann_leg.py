@@ -1,7 +1,4 @@
-"""After https://github.com/JuliaRobotics/RigidBodyDynamics.jl/issues/480: a leg that falls apart; Klann's, in metres.
-
-Its motor starts from rest.
-"""
+"""A leg that falls apart, after https://github.com/JuliaRobotics/RigidBodyDynamics.jl/issues/480."""
 
 import math
 

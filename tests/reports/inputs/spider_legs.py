@@ -1,4 +1,4 @@
-"""After https://github.com/viblo/pymunk/issues/241: legs that very stiff DampedRotarySprings hold; pixels."""
+"""Legs with very stiff DampedRotarySprings, after https://github.com/viblo/pymunk/issues/241 (in pixels)."""
 
 import pymunk
 

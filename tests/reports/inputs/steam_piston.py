@@ -1,4 +1,4 @@
-"""After https://github.com/godotengine/godot/pull/27462: a groove that gives way; a steam piston in millimetres."""
+"""A steam piston with a groove that gives way, after https://github.com/godotengine/godot/pull/27462 (in mm)."""
 
 import math
 
