@@ -62,7 +62,7 @@ def test_experiments_and_their_texts_use_existing_controls(lesson):
 
 def test_a_method_with_python_code_in_every_step_is_refused():
     sleigh = ChaplyginSleigh().mechanism()
-    with pytest.raises(Unsupported, match="writes rows while it steps"):
+    with pytest.raises(Unsupported, match="needs our code in every step"):
         mujoco_text(mujoco_engine.TUNED, sleigh, 1e-3)
     with pytest.raises(Unsupported, match="needs Python code in every step"):
         space_of(replace(pymunk_engine.DEFAULT, roll="pivot"), RollingDisc().mechanism(), 1.0)
