@@ -12,8 +12,8 @@
     beside                                                  # truth, run, errors and a figure; beside.frame() for pandas
     rows = crosscheck.run("free_four_bar", "pymunk", every=[100])   # rows of errors; crosscheck.report() writes pages
 
-`reference`, `engines` and `reports` are general names, so that a foreign package may hide one of this suite; `clash`
-reports it. Modules that are slow to import are imported inside functions.
+Another package may be named `reference`, `engines` or `reports` and hide a package of this suite. `clash` reports this.
+Modules that are slow to import are imported inside functions.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import os
 import sys
 
 if __name__ == "__main__" and not sys.flags.safe_path:
-    sys.path[0] = os.path.dirname(os.path.realpath(__file__))  # instead of the current folder (`python -m`)
+    sys.path[0] = os.path.dirname(os.path.realpath(__file__))  # replaces the current folder
 
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
@@ -44,11 +44,11 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 
 
 def clash(packages: tuple[str, ...] = PACKAGES) -> str:
-    """A sentence about the first package that is not the one beside this file, or empty. Imports no package."""
+    """An error message if a package is missing or another package hides it, else empty. Imports no package."""
     for name in packages:
         try:
             spec = find_spec(name)
-        except (ImportError, ValueError):  # a module without a spec has this name
+        except (ImportError, ValueError):  # A module of this name has no spec.
             spec = None
         folders = [] if spec is None else list(spec.submodule_search_locations or [spec.origin])
         if os.path.join(HERE, name) not in map(os.path.realpath, filter(None, folders)):
@@ -73,11 +73,11 @@ def check(
     apply: str | Path = "",
     folder: Path | None = None,
 ) -> CheckReport:
-    """The report of `crosscheck check` on a model: a file as on the command line, a mujoco.MjModel or a pymunk.Space.
+    """Check a model and return the report. The model is a path, a mujoco.MjModel or a pymunk.Space.
 
-    duration [s]: of the checked motion. tolerance: largest error of angles [rad], and of positions in lengths of the
-    mechanism. `without`, `key`, `step` [s], `quick`, `fix_to` and `apply` are the options of the command. folder: the
-    base of relative paths, the current folder if None. Raises ValueError if the model can't be checked.
+    duration: duration of the motion [s]. tolerance: largest allowed error of angles [rad], and of positions divided by
+    the length of the mechanism. Further arguments are options of `crosscheck check`. Relative paths start at `folder`,
+    by default the current folder. Raises ValueError if the model can't be checked.
     """
     from reports.check.request import CheckRequest, Refused, run_check
 
@@ -96,8 +96,7 @@ def check(
 def compare(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float = 2.0) -> Comparison:
     """Compare the run of an engine at a step dt [s] over a duration [s] with the ideal motion of the mechanism.
 
-    engine: an object, or a name such as "mujoco tuned". Raises ValueError, also if the engine can't build the
-    mechanism.
+    engine: an engine, or a name such as "mujoco tuned". Raises ValueError if the engine can't build the mechanism.
     """
     from reports.check.comparing import compare_with_ideal
 
@@ -117,10 +116,10 @@ def run(
     workers: int | None = None,
     results: str | Path = "crosscheck-results",
 ) -> list[Measurement]:
-    """The rows of `crosscheck run`; cells that are not stored in the folder `results` are run and stored there.
+    """Return the rows of `crosscheck run`. Cells that are not stored in the folder `results` are run and stored there.
 
-    scenes: names of scenes or pages, all if empty. settings: other numbers of these scenes. every: only these numbers
-    of steps between two samples. steps: only these steps [s]. Raises ValueError.
+    scenes: names of scenes or pages; if empty, all scenes. settings: changed parameters of the scenes. every: numbers
+    of steps between two samples. steps: step sizes [s]. Raises ValueError.
     """
     from reports.cli.run import Selection, run_grid
 
@@ -149,8 +148,8 @@ def search(
 ) -> list[CaseResult]:
     """Check random mechanisms in the variants of an engine, or of all if None, like `crosscheck search`.
 
-    seed: that of the last commit if None. seconds: no case starts later. The cases and the shrunk findings are stored
-    in the folder `results`. Raises ValueError.
+    If the seed is None, it follows from the last commit. No case starts after `seconds`. The cases and the reduced
+    findings are stored in the folder `results`. Raises ValueError.
     """
     from reports.cli.options import SEARCH
     from reports.cli.search import chosen_subjects
@@ -163,7 +162,7 @@ def search(
 def versions(
     engine: str, version: str, scenes: Sequence[str] = (), results: str | Path = "crosscheck-results"
 ) -> VersionColumn:
-    """The rows of scenes in a release of an engine, which pip installs once; six short scenes if none is named.
+    """Run scenes in a release of an engine, by default six short scenes. pip installs the release once.
 
     Raises ValueError if the release does not exist.
     """
@@ -181,9 +180,9 @@ def build_comparison(
     scenes: Sequence[str] = (),
     results: str | Path = "crosscheck-results",
 ) -> BuildComparison:
-    """The rows and differences of two builds of an engine, each NAME==VERSION, a wheel or a folder.
+    """Compare two builds of an engine. A build is NAME==VERSION, the path of a wheel, or a folder.
 
-    `complaint` of the result is a sentence if the second build is worse, and empty otherwise. Raises ValueError.
+    `complaint` of the result is empty unless the second build is worse. Raises ValueError.
     """
     from reports.versions.builds import compare_builds, scenes_named
 
@@ -198,10 +197,10 @@ def linkage(
     gravity: tuple[float, float] = (0.0, -9.81),
     density: float = 1.0,
 ) -> Mechanism:
-    """A mechanism at rest of uniform bars between named points [m]; pins connect bars at common points.
+    """A mechanism at rest that consists of uniform bars between named points [m]. Pins connect bars at common points.
 
-    bars: name -> two points. ground: the points that are pinned to the ground. density [kg/m]; gravity [m/s^2]. Raises
-    ValueError.
+    bars: name -> two points. ground: the points that are pinned to the ground. gravity: [m/s^2]. density: [kg/m].
+    Raises ValueError.
     """
     from reference.linkage import linkage as made
 
@@ -209,7 +208,7 @@ def linkage(
 
 
 def draw(mechanism: Mechanism, pose: Any = None) -> Picture:
-    """A picture of a mechanism in its initial pose, or in a pose (bodies, 3) [m, m, rad]; `save` writes it as SVG."""
+    """A picture of a mechanism in a pose (bodies, 3) [m, m, rad], by default the initial pose."""
     from reports.check.comparing import draw_mechanism
 
     return draw_mechanism(mechanism, pose)

@@ -6,7 +6,7 @@
     def test_my_engine(crosscheck):
         crosscheck.conform(MyEngine(), expected_failures={"orders_are_kept": "a known bug, number 12"})
 
-Every run of pytest imports this module, which is registered under pytest11, so that slow imports are inside functions.
+Every run of pytest imports this module, so slow imports are inside functions.
 `pytest -m crosscheck --scene ... --engine ... --baseline ... --crosscheck-report ...` runs the grid from any folder.
 Without `-m crosscheck` these options do not exist, since other plugins may have options with the same names.
 """
@@ -34,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect the grid without `-m crosscheck`, since its options and fixtures do not exist then."""
+    """Deselect the tests of the grid unless `-m crosscheck` is given."""
     if config.pluginmanager.has_plugin(PLUGIN):
         return
     grid = [item for item in items if item.get_closest_marker("crosscheck")]
@@ -44,7 +44,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser, args: list[str]) -> None:
-    """With `-m crosscheck`, add the options of the grid, and its tests unless the command line names tests."""
+    """With `-m crosscheck`, add the options and the tests of the grid. Tests that the user names replace its tests."""
     expression = early_config.known_args_namespace.markexpr or ""
     if not re.search(r"\bcrosscheck\b", expression) or re.search(r"\bnot\s+crosscheck\b", expression):
         return
@@ -57,7 +57,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
 
 
 def _require_ours() -> None:
-    """Fail with a sentence if another package hides `reference`, `engines` or `reports`, whose names are general."""
+    """Raise UsageError if another package hides `reference`, `engines` or `reports`."""
     from planar_crosscheck import clash
 
     if message := clash():
@@ -65,7 +65,7 @@ def _require_ours() -> None:
 
 
 class Crosscheck:
-    """The fixture `crosscheck`. Paths of models are relative to the folder of the test file, or else of the run."""
+    """The fixture `crosscheck`. Paths of models start at the folder of the test file or at the current folder."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -73,7 +73,7 @@ class Crosscheck:
     def check(self, model: Any, tolerance: float = 1e-4, duration: float = 2.0, **terms: Any) -> CheckReport:
         """Fail the test if the settings of a model miss the tolerance, or if the model can't be checked.
 
-        The message has the advised settings. `terms` are keyword arguments of `planar_crosscheck.check`.
+        The message contains the advised settings. `terms` are keyword arguments of `planar_crosscheck.check`.
         """
         from planar_crosscheck import check
         from reports.check.rendering import plain
@@ -94,17 +94,17 @@ class Crosscheck:
 
 
 def _failing(call: Callable[[], Any]) -> Any:
-    """Return the call's result; fail the test with the error's message if it raises."""
+    """Return the result of the call. If it raises, fail the test with the message of the exception."""
     message = ""
     try:
         return call()
     except (ValueError, AssertionError) as reason:
         message = str(reason) or repr(reason)
-    pytest.fail(message, pytrace=False)  # inside `except`, pytest would print both errors
+    pytest.fail(message, pytrace=False)  # Inside `except`, pytest would print both errors.
 
 
 @pytest.fixture
 def crosscheck(request: pytest.FixtureRequest) -> Crosscheck:
-    """Checks your models and engines; planar_crosscheck_pytest.py begins with examples."""
+    """A fixture that checks your models and engines. See the examples in planar_crosscheck_pytest.py."""
     _require_ours()
     return Crosscheck(request.path.parent)

@@ -1,4 +1,4 @@
-"""The program, `crosscheck` or `python -m reports`. Every error ends it with an exit status and one line.
+"""The program `crosscheck`, also `python -m reports`. After an error it prints one line and returns an exit status.
 
 Slow modules are imported only after the handler of Ctrl-C is set.
 """
@@ -10,14 +10,14 @@ import sys
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run a command, by default that of the process. Always raises SystemExit with a status of ending.py."""
+    """Run a command and raise SystemExit with its exit status. By default the arguments of the process are used."""
     program = arguments is None
     status = 130
     try:
         from reports.cli.interruption import ending_at_once, from_now_on_ignored
         from reports.cli.streams import leave_streams, open_streams
 
-        with ending_at_once():  # a command may set its own handler of Ctrl-C
+        with ending_at_once():  # A command may set another handler of Ctrl-C.
             if program:
                 open_streams()
             try:
@@ -55,7 +55,7 @@ def _ended(arguments: list[str]) -> int:
         if isinstance(error, FileNotFoundError) and error.filename is None:  # raised by os.getcwd
             sentence = "the current folder was removed; go to one that is there"
     except Exception as error:
-        # A usage error of typer, which would print several lines.
+        # typer would print its usage errors on several lines.
         message = getattr(error, "format_message", None)
         if message is None:
             raise
@@ -66,6 +66,6 @@ def _ended(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    if not sys.flags.safe_path:  # replaces the current folder, which `python -m` puts first
+    if not sys.flags.safe_path:  # The current folder, which `python -m` puts first, is replaced.
         sys.path[0] = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     main()

@@ -1,6 +1,6 @@
-"""Measurements of `crosscheck bench`: CPU times of runs and bare loops, of a grid, the judge and commands; the site.
+"""Measurements of `crosscheck bench`: CPU times of engines, the judge and commands, and the size of the site.
 
-Times of loops, of the judge and of commands are minima of several runs. Nothing is asserted.
+Times of loops, of the judge and of commands are minima of several runs.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from reports.model.spending import taken
 from reports.site.folder import MARKER, compressed_size, server
 
 BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
-TURNS = 7  # runs of each of two loops, alternating, so that a slow period of the machine affects both
+TURNS = 7  # Number of runs of each loop. Two loops run alternately, so a slow period of the machine affects both.
 COMMAND_TURNS = 3
 ROOT = Path(__file__).resolve().parents[1]
-LESSON, LESSON_SCENE, LESSON_STEP = "lessons/four_bar.html", 1, 4e-3  # The free linkage, which moves for 1 s; step [s].
+LESSON, LESSON_SCENE, LESSON_STEP = "lessons/four_bar.html", 1, 4e-3  # page, index of the scene, step [s]
 # The time of the first contentful paint of a page, as the browser reports it [ms].
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
 STEPPED = """async ([scene, step, turns]) => {
@@ -56,7 +56,7 @@ Row = tuple[str, float, str]  # name, value, unit
 
 @dataclass(frozen=True)
 class LoopCost:
-    """CPU seconds per step of `run` and of the bare loop, each the minimum of TURNS runs."""
+    """CPU seconds per step of `run` and of a bare loop. Both are minima of TURNS runs."""
 
     engine: Engine
     steps: int
@@ -69,7 +69,7 @@ class LoopCost:
 
 
 def measure_loops(engines: Iterable[Engine], scene: Scene, every: int = 10) -> Iterator[LoopCost]:
-    """The costs of each engine that can build the scene and has a bare loop (entry points `crosscheck.bare_loops`)."""
+    """The costs of each engine that can build the scene and has a bare loop (entry point `crosscheck.bare_loops`)."""
     mechanism, dt, steps = scene.mechanism(), scene.spacing / every, scene.samples * every
     loops = registered_by_key("crosscheck.bare_loops", BARE_LOOP)
     for engine in engines:
@@ -86,7 +86,7 @@ def measure_loops(engines: Iterable[Engine], scene: Scene, every: int = 10) -> I
 
 
 def measure_grid(cells: Iterable[Cell]) -> dict[str, dict[str, float]]:
-    """CPU seconds of the cells, run sequentially in this process, by part, by method and by scene."""
+    """Run the cells sequentially in this process; return CPU seconds by part, by method and by scene."""
     out: dict[str, dict[str, float]] = {name: defaultdict(float) for name in ("part", "method", "scene")}
     taken()
     for cell in cells:
@@ -103,14 +103,14 @@ def measure_grid(cells: Iterable[Cell]) -> dict[str, dict[str, float]]:
 
 
 def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -> list[Row]:
-    """CPU time of the judge: an evaluation, a second of the free four-bar, steps of chains. BadInput without numba."""
+    """CPU times of the judge for an evaluation, a four-bar and long chains. Raises BadInput without numba."""
     scene = FreeFourBar(duration=1.0)
     mechanism = scene.mechanism()
     model = CompiledModel.of(mechanism) if Lagrange().in_machine_code else None
     if model is None:
         raise BadInput("the judge is timed as compiled code: install numba, the extra 'fast'")
     rows = [("four-bar: one evaluation", 1e6 * _least(lambda: _measure_evaluation(model), turns), "us")]
-    # At order 8 the error is 1e-12 rad with steps of 5e-3 s, and larger with steps of 1e-2 s.
+    # At order 8 the error is 1e-12 rad with steps of 5e-3 s. With steps of 1e-2 s the error is larger.
     for engine, every in ((Lagrange("rk4"), 10), (Lagrange(), 1), (Lagrange(), 2), (Lagrange(tolerance=1e-12), 1)):
         step = f"step {1e-2 / every:g} s" if engine.tolerance is None else "samples 0.01 s apart"
         name = f"four-bar: a second by {engine.variant}, {step}"
@@ -129,9 +129,9 @@ def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -
 
 
 def measure_truths(scenes: Iterable[Scene]) -> list[Row]:
-    """CPU seconds of the exact motions of scenes at all their samples, the largest first.
+    """CPU seconds to compute the exact motions of scenes, in descending order.
 
-    Call it first in a process, since some motions are cached. Scenes without an exact motion are left out.
+    Call this function first in a process, since some motions are cached. Scenes without an exact motion are left out.
     """
     rows = []
     for scene in scenes:
@@ -145,7 +145,7 @@ def measure_truths(scenes: Iterable[Scene]) -> list[Row]:
 
 
 def _measure_evaluation(model: CompiledModel, count: int = 2000) -> float:
-    """CPU seconds of one evaluation of the reactions and accelerations at the initial state."""
+    """CPU seconds to compute the reactions and accelerations of the initial state once."""
     poses, twists = model.empty_samples(count)
     poses[:], twists[:] = poses[0], twists[0]
     begin = time.process_time()
@@ -160,16 +160,16 @@ def _least(seconds: Callable[[], float], turns: int) -> float:
 
 @dataclass(frozen=True)
 class CommandCost:
-    """The fastest of COMMAND_TURNS runs of a command, each in an empty folder."""
+    """Times of the fastest of COMMAND_TURNS runs of a command. Every run starts in an empty folder."""
 
     words: tuple[str, ...]
-    wall: float  # s of wall time.
-    cpu: float  # s.
+    wall: float  # Wall time [s].
+    cpu: float  # CPU time [s].
     status: int
 
 
 def measure_command(words: Sequence[str]) -> CommandCost:
-    """Run `crosscheck WORDS` as a process; its output is discarded. CPU seconds include those of its children."""
+    """Run `crosscheck WORDS` as a process and discard the output. The CPU time includes that of child processes."""
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     runs = []
     for _ in range(COMMAND_TURNS):
@@ -189,7 +189,7 @@ def measure_command(words: Sequence[str]) -> CommandCost:
 
 
 def measure_site(folder: Path) -> list[Row]:
-    """Sizes of a site, and times of its first page and of a lesson in Chromium. BadInput without browser or site."""
+    """Sizes of a site, and loading times of two pages in Chromium. Raises BadInput without a browser or a site."""
     if not (folder / MARKER).is_file():
         raise BadInput(f"{folder} has no site: `crosscheck site` writes one")
     contents = {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}

@@ -1,1 +1,1 @@
-"""The check of a user's model: facts, errors of its own settings, and settings that meet a tolerance."""
+"""The check of a user's model: facts, errors of the user's settings, and settings that meet a tolerance."""

@@ -1,4 +1,4 @@
-"""The check of a user's model from reading to verdict, as numbers; `reports.check.telling` makes sentences of them."""
+"""The check of a user's model from reading to verdict, as numbers. `reports.check.telling` renders them as text."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ from reports.check.settings import (
 from reports.run.files import is_stream
 from reports.write.tables import number
 
-SWEEP_BUDGET = 5.0  # s of CPU time for all settings together
+SWEEP_BUDGET = 5.0  # CPU time for all settings together [s].
 COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
-SEARCH_BUDGET = 60.0  # s of CPU time to look for settings that reach a goal.
-READER_MEMBERS = ("words", "elements", "reads", "read")  # That every reader must have.
-NAMES_LISTED = 6  # Elements in a sentence.
+SEARCH_BUDGET = 60.0  # CPU time for the search of settings that meet the user's tolerance [s].
+READER_MEMBERS = ("words", "elements", "reads", "read")  # Every reader must have these members.
+NAMES_LISTED = 6  # Largest number of elements that a sentence names.
 COMPARED_SAMPLES = 200  # Approximate number of compared instants.
 OBSTACLE_CHECKS = 10  # Largest number of obstacle checks between two samples.
-APPLY_MARGIN = 1.1  # Times the expected error: a larger error shows that some settings did not reach the model.
-QUICK_TOLERANCE = 1e-9  # Relative tolerance of the declared motion with --quick: enough for errors of two digits.
+APPLY_MARGIN = 1.1  # If the error exceeds the expected error by this factor, some settings had no effect on the model.
+QUICK_TOLERANCE = 1e-9  # Relative tolerance of the declared motion with --quick. Errors then have two correct digits.
 Array = NDArray[np.float64]
 
 
 def readers() -> dict[str, Reader]:
-    """Readers of users' models, by their names in the entry point group `crosscheck.readers`."""
+    """Name -> reader of users' models, from the entry point group `crosscheck.readers`."""
     lacking = f"it lacks one of {', '.join(READER_MEMBERS)}"
     kind = Kind("reader", lambda value: "" if all(hasattr(value, name) for name in READER_MEMBERS) else lacking)
     return registered_by_key("crosscheck.readers", kind)
@@ -71,14 +71,14 @@ def read_user_model(word: str, folder: Path, terms: ReadingTerms = AS_IT_IS) -> 
 
 @dataclass(frozen=True)
 class ErrorParts:
-    """Contributions to the error as largest pose distances (`judging.pose_distance`); an unknown one is NaN."""
+    """Contributions to the error, as largest pose distances (`judging.pose_distance`). NaN means unknown."""
 
-    softness: float  # Between the motion of the engine's declared soft joints and the ideal motion.
-    step: float  # Between the user's run and the declared motion.
-    rest: float  # Between the run at the smallest step of the sweep and the declared motion.
-    smallest: float  # s; the smallest step of the sweep.
-    falling: bool  # Whether the error still decreases at the smallest step, so that `rest` is only an upper bound.
-    divided: bool = True  # False: the engine declares no law of its joints, so softness and step are not separated.
+    softness: float  # Distance of the motion with the engine's declared soft joints from the ideal motion.
+    step: float  # Distance of the user's run from the motion with the declared soft joints.
+    rest: float  # Distance of the run at the smallest step from the motion with the declared soft joints.
+    smallest: float  # The smallest step of the sweep [s].
+    falling: bool  # Whether the error still decreases at the smallest step. Then `rest` is an upper bound.
+    divided: bool = True  # Whether the engine declares a law of its joints, so that softness and step are separated.
 
 
 def split_error(
@@ -89,9 +89,9 @@ def split_error(
     tolerance: float = SOFT_TOLERANCE,
     horizon: float = np.inf,
 ) -> ErrorParts:
-    """Split the error of the user's run; `smaller`: runs of the same settings at smaller steps, the largest first.
+    """Split the error of the user's run. smaller: runs of the same settings at smaller steps, the largest step first.
 
-    `tolerance` is the relative tolerance for integrating the declared motion. Samples after `horizon` [s] do not count.
+    tolerance: relative tolerance of the integration with soft joints. Samples after `horizon` [s] do not count.
     """
     mechanism, model = reading.mechanism, reading.model
     declared, softness = truth.pose, 0.0 if model.declares else float("nan")
@@ -116,27 +116,27 @@ def _largest(values: Array) -> float:
 @dataclass(frozen=True)
 class Applied:
     file: str
-    words: str  # Its settings.
+    words: str  # Description of the settings.
     error: float  # Largest error of the run.
-    cpu: float  # s of stepping.
+    cpu: float  # CPU time of stepping [s].
     notes: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class CheckResult:
-    """The result of a check. An error is an angle [rad], or a distance divided by the length of the mechanism."""
+    """The result of a check. Errors are angles [rad] or distances divided by the length of the mechanism."""
 
     name: str
     reading: Reading
     duration: float
     tolerance: float
-    agreement: float  # relative difference of the accelerations at t = 0
+    agreement: float  # Relative difference of the initial accelerations between engine and judge.
     facts: Facts
     judge: IdealMotion
     judge_errors: Errors
     opens: Opening | None
     parts: ErrorParts
-    table: list[SettingRun]  # The user's own settings are the first.
+    table: list[SettingRun]  # The first run has the user's settings.
     has_tolerance: bool = True  # Whether the user gave the tolerance.
     applied: Applied | None = None
 
@@ -169,7 +169,7 @@ class CheckResult:
 
     @property
     def _hinges_instead(self) -> str:
-        """A hint for a mechanism that is locked by welds: the joint that the user perhaps meant."""
+        """A hint for a mechanism that welds lock: the user perhaps meant hinges."""
         if not (welds := self.facts.locking_welds):
             return ""
         hinge = "connect, which holds a point and no angle," if self.reading.model.engine == "MuJoCo" else "a hinge"
@@ -181,7 +181,7 @@ class CheckResult:
 
     @property
     def decade(self) -> SettingRun | None:
-        """The cheapest setting whose error is at most a tenth of the advised setting's error."""
+        """The cheapest setting with at most a tenth of the error of the advised setting."""
         return None if self.advised is None else cheapest(self.table, self.advised.error / 10)
 
     @property
@@ -198,7 +198,7 @@ class CheckResult:
         return self.until_horizon(self.own_errors)
 
     def rerun(self, reading: Reading) -> tuple[float, float]:
-        """(largest error, CPU time [s]) of a run of another reading over the same time."""
+        """Run another model for the same duration and return (largest error, CPU time [s])."""
         spacing = float(self.judge.trajectory.t[1])
         run = reading.model.run(len(self.judge.trajectory.t) - 1, max(1, round(spacing / reading.model.dt)))
         return measure_errors(reading.mechanism, self.judge.trajectory, run).largest, run.stepping
@@ -215,8 +215,8 @@ def check(
 ) -> CheckResult:
     """Check a model for a motion of `duration` [s]; `on_progress` is called with the name of each stage.
 
-    Raises Unsupported if the motion meets an obstacle that is no part of an ideal mechanism, such as a joint limit,
-    and InvalidMechanism if the ideal motion can't be computed.
+    Raises Unsupported if the motion reaches an obstacle such as a joint limit, which ideal mechanisms do not have.
+    Raises InvalidMechanism if the ideal motion can't be computed.
     """
     mechanism, model, plan = reading.mechanism, reading.model, plan or SweepPlan(SWEEP_BUDGET)
     if not 0 < model.dt < float("inf"):
@@ -258,15 +258,15 @@ def check(
 
 
 def _below(at: float) -> float:
-    """A slightly smaller time [s], rounded down to two digits."""
+    """A time [s] slightly before `at`, rounded down to two digits."""
     size = 10.0 ** np.floor(np.log10(at) - 1)
     return float(np.floor(at * 0.999 / size) * size)
 
 
 def apply_advised(result: CheckResult, target: Path) -> Applied:
-    """Write the model with the advised settings, or unchanged if it meets the tolerance; then run the file.
+    """Write the model with the advised settings and run it. A model that meets the tolerance is written unchanged.
 
-    Raises Unsupported if nothing can be written; the target is then unchanged.
+    Raises Unsupported if the file can't be written. The target is then unchanged.
     """
     source, advised = result.reading.source, result.advised
     if source is None:
@@ -286,7 +286,7 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
     )
     text = source.path.read_bytes() if result.met else source.changed(change)
     try:
-        # In the target's folder, since the model may name files by paths relative to it.
+        # The file is in the folder of the target, since the model may contain paths relative to this folder.
         aside = target.with_name(f".{target.stem}.crosscheck{target.suffix}")
         aside.write_bytes(text)
         try:
@@ -307,7 +307,7 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
 
 
 def resample(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
-    """Times, poses and twists with `parts` instants per sample interval, by cubic Hermite interpolation."""
+    """Times, poses and twists with `parts` instants per sampling interval, by cubic Hermite interpolation."""
     spline = CubicHermiteSpline(motion.t, motion.pose, motion.twist)
     t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)
     return t, spline(t), spline(t, 1)

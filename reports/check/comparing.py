@@ -35,7 +35,7 @@ class Picture:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
-    """A run of an engine and its errors; `print` shows a table, a notebook also shows figures."""
+    """A run of an engine and its errors. `print` shows a table. A notebook also shows figures."""
 
     mechanism: Mechanism
     engine: Engine
@@ -59,7 +59,7 @@ class Comparison:
         return pandas.DataFrame(dict(self.errors.of), index=pandas.Index(self.errors.t, name="t"))
 
     def figures(self) -> dict[str, Picture]:
-        """Figures by name. `errors`: the errors over time; `worst`: both poses at the time of the largest error."""
+        """The figures 'errors' (errors over time) and 'worst' (two poses at the time of the largest error)."""
         judge = measure_errors(self.mechanism, self.truth, self.judge.looser)
         displayed = picture_data(self.mechanism, self.judge, judge, self.run, self.errors, label=self.title)
         return {name: Picture(*drawing) for name, drawing in render_pictures(displayed).items()}
@@ -96,7 +96,7 @@ def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, du
 
 
 def _engine_named(name: str) -> Engine:
-    """The engine with the name "engine" or "engine variant". Raises ValueError."""
+    """The engine that "NAME" or "NAME VARIANT" names. Raises ValueError."""
     engines = {method_name(engine): engine for engine in registry.ENGINES}
     engine = engines.get(name) or engines.get(f"{name} default")
     if engine is None:

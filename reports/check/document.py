@@ -1,4 +1,4 @@
-"""The JSON document of `crosscheck check --json` and its JSON Schema; both follow from the table OBJECTS."""
+"""The JSON document of `crosscheck check --json` and its JSON Schema. Both are generated from the table OBJECTS."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 from reports.check.checked import CheckResult
 
 TYPES = {"number": "number", "integer": "integer", "text": "string", "flag": "boolean", "object": "object"}
-# Each line is a member, "name: type: description", or "name = attribute path: type: description". A type ends in "?" if
-# the value may be null, as it is for a number that is not finite. "[...]" is a list. Capitals name an object.
+# A line describes a member as "name: type: description" or "name = attribute path: type: description". A type ends in
+# "?" if the value may be null. A number that is not finite is null. "[...]" is a list. Capitals name an object.
 OBJECTS = {
     "MODEL": """
 name: text: the model
@@ -113,12 +113,12 @@ notes: [text]: what was done to a script, and what did not take
 
 
 def check_data(found: CheckResult) -> dict[str, Any]:
-    """The document of a check, which `schema` describes."""
+    """The JSON document of a check. `schema` describes its format."""
     return _plain("MODEL", found)
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of the document of a model, and of the list of documents of a folder."""
+    """The JSON Schema for one model and for the list of a folder's models."""
     model = {"$ref": "#/$defs/MODEL"}
     refused = {"type": ["string", "null"], "description": "why there is no answer"}
     entry = {"model": {"type": "string"}, "refused": refused, "found": {"anyOf": [model, {"type": "null"}]}}
@@ -132,7 +132,7 @@ def schema() -> dict[str, Any]:
 
 
 def _members(kind: str) -> Iterator[tuple[str, str, str, str]]:
-    """(name, attribute path, type, description) of each member of an object of OBJECTS."""
+    """Yield (name, attribute path, type, description) for the members of an object in OBJECTS."""
     for line in OBJECTS[kind].strip().splitlines():
         name, its_kind, description = line.split(": ", 2)
         name, _, path = name.partition(" = ")

@@ -1,4 +1,4 @@
-"""Facts of a mechanism that do not depend on an engine: freedoms, redundant rows, singular positions, time scales."""
+"""Properties of a mechanism that do not depend on an engine, such as freedoms and singular positions."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from reference.trajectory import Trajectory
 from reports.check.judging import accelerations
 
 Array = NDArray[np.float64]
-NEARLY_SINGULAR = 1e-2  # Ratio of the smallest to the largest singular value below which a position is near-singular.
-RANK_TOLERANCE = 1e-9  # Ratio of a singular value to the largest below which it counts as zero.
-SVD_NUMBERS = 2e7  # Largest number of matrix elements, all samples together, whose singular values are computed.
-DIFFERENCE_STEP = 1e-6  # Step of finite differences, relative to the length and the time of the mechanism.
-MOST_DIRECTIONS = 60  # Free directions for which the eigenvalues are computed.
+NEARLY_SINGULAR = 1e-2  # A position is near-singular if the smallest singular value is below this share of the largest.
+RANK_TOLERANCE = 1e-9  # A singular value below this share of the largest one counts as zero.
+SVD_NUMBERS = 2e7  # Limit of the number of matrix elements, summed over all samples.
+DIFFERENCE_STEP = 1e-6  # Step of finite differences, relative to the length and the time scale of the mechanism.
+MOST_DIRECTIONS = 60  # With more free directions the eigenvalues are not computed.
 
 
 @dataclass(frozen=True)
@@ -27,17 +27,17 @@ class Facts:
     joints: int
     forces: int
     rows: int
-    freedoms: tuple[int, int]  # numbers of degrees of freedom of configuration and of velocity
+    freedoms: tuple[int, int]  # Degrees of freedom of the configuration, and of the velocities.
     redundant: int
     undetermined: tuple[str, ...]  # Rows whose reactions are not unique.
-    singular: tuple[tuple[float, float], ...]  # (time [s], smallest singular value divided by the largest).
+    singular: tuple[tuple[float, float], ...]  # (time [s], ratio of the smallest to the largest singular value)
     dead_centres: tuple[tuple[float, str], ...]  # (time [s], body).
     fastest_rotation: float  # rad/s.
-    stiffest_mode: float  # 1/s, at the start.
+    stiffest_mode: float  # Largest absolute eigenvalue at the start [1/s].
     length: float  # m.
     time: float  # s.
-    locked: bool = False  # The joints leave no freedom, and none prescribes a motion.
-    locking_welds: tuple[str, ...] = ()  # Of a locked mechanism: welds that as hinges would leave a freedom.
+    locked: bool = False  # Whether the joints leave no freedom and prescribe no motion.
+    locking_welds: tuple[str, ...] = ()  # Welds of a locked mechanism. With hinges instead it would have a freedom.
 
 
 def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
@@ -57,7 +57,7 @@ def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
 
 
 def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
-    """The welds of a locked mechanism, if hinges in their places would leave a freedom."""
+    """The welds of a locked mechanism. Empty if hinges instead of the welds would leave no freedom either."""
     hinges = tuple(
         Pin(joint.name, joint.first, joint.second, joint.first_point, joint.second_point)
         if isinstance(joint, Weld)
@@ -69,7 +69,7 @@ def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: int) -> tuple[tuple[float, float], ...]:
-    """(time [s], ratio of singular values) of each near-singular position: a local minimum below NEARLY_SINGULAR."""
+    """(time [s], ratio of singular values) at each local minimum of the ratio below NEARLY_SINGULAR."""
     if independent < 2:
         return ()
     stride = max(1, int(len(motion.t) * mechanism.row_count * 3 * len(mechanism.bodies) / SVD_NUMBERS))
@@ -87,9 +87,9 @@ def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: in
 
 
 def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tuple[tuple[float, str], ...]:
-    """(time [s], body) of each reversal of a body that is jointed to the ground, while another body moves.
+    """(time [s], body) when a body on the ground reverses its direction while another body moves.
 
-    Empty for more than one freedom and for mechanisms without loops.
+    Empty for mechanisms with more than one freedom or without loops.
     """
     loops = mechanism.row_count > 2 * len(mechanism.bodies)
     if freedoms > 1 or not loops:
@@ -116,14 +116,14 @@ def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tu
 def _stiffest_mode(mechanism: Mechanism) -> float:
     """Largest absolute eigenvalue [1/s] of the equations of motion, linearised at the initial pose at rest.
 
-    0 if the joints leave no freedom or more than MOST_DIRECTIONS freedoms; NaN if an acceleration is not finite.
+    Returns 0 for no freedom and for more than MOST_DIRECTIONS freedoms, and NaN if an acceleration is not finite.
     """
     count = mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, count))
     _, sizes, right = np.linalg.svd(rows * unit, full_matrices=True)
     rank = int(np.sum(sizes > RANK_TOLERANCE * sizes[0])) if len(sizes) else 0
-    free = right[rank:].T  # dimensionless directions that the joints allow
+    free = right[rank:].T  # Dimensionless directions that the joints allow.
     if free.shape[1] == 0 or free.shape[1] > MOST_DIRECTIONS:
         return 0.0
 

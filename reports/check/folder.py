@@ -1,4 +1,4 @@
-"""Checks of all models in a folder: finding the files, and their answers as a table, as data and as JUnit XML."""
+"""The models in a folder, and the results of their checks as a table, as JSON data and as JUnit XML."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any
 from reports.check.request import CheckReport, CheckRequest, Refused
 
 FOLDER_HEADER = ("model", "off by", "why", "advice", "its error", "CPU, times yours")
-BYTES_READ = 65536  # bytes of a file that are searched for a tag or an import
+BYTES_READ = 65536  # The first bytes of a file are searched for a tag or an import.
 MODEL_TAG = re.compile(rb"<(mujoco|robot)[\s/>]")
 PYMUNK_IMPORT = re.compile(rb"^(import|from) pymunk\b", re.MULTILINE)
 Answers = Sequence[tuple[CheckRequest, CheckReport | Refused]]
 
 
 def find_models(folder: Path) -> list[Path]:
-    """Files below a folder that are MuJoCo or URDF models or scripts that import pymunk, sorted by name."""
+    """MuJoCo models, URDF models, and scripts that import pymunk, in a folder and its subfolders, sorted by name."""
     kinds = {".xml": MODEL_TAG, ".mjcf": MODEL_TAG, ".urdf": MODEL_TAG, ".py": PYMUNK_IMPORT}
     paths = []
     for path in sorted(folder.rglob("*")):
@@ -33,7 +33,7 @@ def find_models(folder: Path) -> list[Path]:
 
 
 def rows(answers: Answers) -> list[tuple[str, ...]]:
-    """The table with the columns FOLDER_HEADER and a row for each model."""
+    """The rows of a table with the columns FOLDER_HEADER. Every model has a row."""
     return [
         (request.word, "-", f"refused: {_short(request, answer)}", "-", "-", "-")
         if isinstance(answer, Refused)
@@ -43,7 +43,7 @@ def rows(answers: Answers) -> list[tuple[str, ...]]:
 
 
 def document(answers: Answers) -> list[dict[str, Any]]:
-    """The document of each model, or the reason of its refusal (`reports.check.document.schema`)."""
+    """The JSON document of each model. A refused model has the reason (`reports.check.document.schema`)."""
     return [
         {"model": request.word, "refused": answer.sentence, "found": None}
         if isinstance(answer, Refused)
@@ -57,7 +57,7 @@ def _short(request: CheckRequest, answer: Refused) -> str:
 
 
 def junit_xml(answers: Answers, seconds: float) -> str:
-    """JUnit XML with a test for each model: failed if the tolerance is missed, skipped if the model is refused."""
+    """JUnit XML with a test for each model. A test fails if the tolerance is missed; a refused model is skipped."""
     missed = sum(isinstance(answer, CheckReport) and not answer.fine for _, answer in answers)
     refused = sum(isinstance(answer, Refused) for _, answer in answers)
     counts = {"tests": str(len(answers)), "failures": str(missed), "errors": "0", "skipped": str(refused)}

@@ -1,4 +1,4 @@
-"""The ideal motion of a model, its accuracy, and errors of runs relative to it."""
+"""The ideal motion of a model, the accuracy of this motion, and errors of runs."""
 
 from __future__ import annotations
 
@@ -22,16 +22,17 @@ from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
 Array = NDArray[np.float64]
-DIVERGED = 1e12  # m, rad, m/s or rad/s: a state with a larger component has diverged.
-SOFT_TOLERANCE = 1e-10  # Relative; well below the truncation error of an engine and well above rounding.
+DIVERGED = 1e12  # A state with a larger component [m, rad, m/s or rad/s] has diverged.
+SOFT_TOLERANCE = 1e-10  # Relative tolerance, far below the truncation errors of engines and far above rounding.
 
 
 def accelerations(
     mechanism: Mechanism, pose: Array, twist: Array, t: float, give: RowRegularisation | None = None
 ) -> Array:
-    """Accelerations (bodies, 3) [m/s^2, rad/s^2]; the joints are ideal, or soft with the regularisation `give`.
+    """Accelerations (bodies, 3) [m/s^2, rad/s^2] with ideal joints, or with soft joints if `give` is a regularisation.
 
-    Soft rows: J a = bias - damping slip - stiffness gap - compliance F, with `give.initial_bias` in place of the bias.
+    Soft rows satisfy J a = b - damping slip - stiffness gap - compliance F. The bias b is that of the mechanism, or
+    `give.initial_bias` unless this is NaN.
     """
     if give is None or not mechanism.row_count:
         return constrained_acceleration(mechanism, pose, twist)[0]
@@ -49,17 +50,17 @@ def soft_motion(
     tolerance: float = SOFT_TOLERANCE,
     twist: Array | None = None,
 ) -> Array:
-    """Poses (times, bodies, 3) of soft joints; NaN after the time at which the integration fails.
+    """Poses (times, bodies, 3) of a motion with soft joints. They are NaN after the integration has failed.
 
-    give(gap, pose): the regularisation of the rows. twist (bodies, 3): initial velocities, the mechanism's if None.
-    LSODA integrates, since the equations are stiff.
+    `give` returns the regularisation of the rows from the gap and the pose. twist: initial velocities (bodies, 3), by
+    default those of the mechanism. The method is LSODA, since the equations are stiff.
     """
     count = mechanism.pose.size
     lengths = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])
 
     def rates(at: float, state: Array) -> Array:
-        if not np.abs(state).max() < DIVERGED:  # NaN makes LSODA repeat the step with a smaller size
+        if not np.abs(state).max() < DIVERGED:  # NaN makes LSODA repeat the step with a smaller size.
             return np.full_like(state, np.nan)
         pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(at)))
@@ -73,27 +74,27 @@ def soft_motion(
     return out
 
 
-LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # Its difference from the reference motion estimates the error of that motion.
+LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # A second run, whose difference estimates the error of the reference motion.
 JUDGE_SHARE = 0.1  # Largest estimated error of the reference motion, relative to the user's tolerance.
-ALONG_CURVE_TOLERANCE = 1e-12  # Relative error of a step along the curve of one freedom.
-LOOSER_CURVE_TOLERANCE = 1e-11  # Of a second run along the curve, whose difference estimates the error.
-DISTURBANCE = 1e-7  # Relative to length and speed: its growth is linear, and it is well above the judge's error.
-LINEAR_LIMIT = 1e-2  # Relative to length and speed: a larger disturbance does not grow linearly.
-DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size): chaos is reported if both grow exponentially.
-REMAINING_SHARE = 1e-3  # Of a disturbance: if the projection onto the joints leaves less, the joints do not allow it.
-# A disturbance of a regular motion grows about linearly in time. Growth by this factor more counts as exponential.
+ALONG_CURVE_TOLERANCE = 1e-12  # Relative error of a step along the configuration curve of a mechanism with one freedom.
+LOOSER_CURVE_TOLERANCE = 1e-11  # Tolerance of a second run along the curve. The difference estimates the error.
+DISTURBANCE = 1e-7  # Initial disturbance relative to length and speed, small enough for linear growth.
+LINEAR_LIMIT = 1e-2  # A disturbance above this size, relative to length and speed, does not grow linearly.
+DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size). Chaos means that both grow exponentially.
+REMAINING_SHARE = 1e-3  # If projection leaves less than this share of a disturbance, the joints do not allow it.
+# A disturbance of a regular motion grows about linearly in time. Growth that is faster by this factor is exponential.
 EXPONENTIAL_GROWTH = 100.0
 
 
 @dataclass(frozen=True, eq=False)
 class IdealMotion:
-    """The ideal motion and its sensitivity to the initial state."""
+    """The ideal motion, and its sensitivity to the initial state."""
 
     trajectory: Trajectory
-    looser: Trajectory  # The same motion with a larger tolerance; the difference estimates the error.
-    growth: Array  # (times,) growth factor of a small disturbance of the initial state.
-    horizon: float  # s; two small disturbances grow exponentially after this time; the duration if they do not.
-    cut: bool = False  # Whether the motion ends early, since the estimated error becomes too large.
+    looser: Trajectory  # The same motion with a larger tolerance. The difference estimates the error.
+    growth: Array  # Growth factor (times,) of a small disturbance of the initial state.
+    horizon: float  # Time [s] after which small disturbances grow exponentially; the duration if they do not.
+    cut: bool = False  # Whether the motion ends early because the estimated error becomes too large.
 
     @property
     def grown(self) -> float:
@@ -109,9 +110,9 @@ class IdealMotion:
 
 
 def reference_motion(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:
-    """The motion of ideal joints, truncated where its estimated error exceeds JUDGE_SHARE of the tolerance.
+    """The motion with ideal joints. It ends when the estimated error exceeds the share JUDGE_SHARE of the tolerance.
 
-    Raises InvalidMechanism if the integration fails, or if already the first sample after the start is inaccurate.
+    Raises InvalidMechanism if the integration fails, or if the first sample after the start is inaccurate.
     """
 
     def by_multipliers(other: Mechanism) -> Trajectory:
@@ -154,7 +155,7 @@ def reference_motion(mechanism: Mechanism, samples: int, spacing: float, toleran
 
 
 def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArray[np.bool_]:
-    """Whether the estimated error and the gaps of the joints are below JUDGE_SHARE of the tolerance (times,)."""
+    """Whether the error and the gaps are below the share JUDGE_SHARE of the tolerance, for each time."""
     off = pose_distance(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose)
     if mechanism.row_count:
         gap = np.abs(np.nan_to_num(mechanism.joint_rows.gap(motion.pose, motion.t)))
@@ -163,9 +164,9 @@ def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> 
 
 
 def _first_exponential(growth: Array, expected: Array, size: float) -> int:
-    """Index of the first sample at which a disturbance exceeds the expected growth; the number of samples if none.
+    """Index of the first sample with more than the expected growth, or the number of samples without such a sample.
 
-    Growth that has receded by the end counts only if the disturbance exceeded LINEAR_LIMIT meanwhile.
+    If the growth is at most the expected one at the end, it counts only if the disturbance has exceeded LINEAR_LIMIT.
     """
     beyond = growth > expected
     stays = beyond[-1] or np.any(beyond & (growth * size > LINEAR_LIMIT))
@@ -173,7 +174,7 @@ def _first_exponential(growth: Array, expected: Array, size: float) -> int:
 
 
 def pose_distance(mechanism: Mechanism, pose: Array, other: Array) -> Array:
-    """Largest difference (times,) of two poses (times, bodies, 3): of angles [rad] and of positions / length."""
+    """Largest difference (times,) of angles [rad] or of positions / length between two motions (times, bodies, 3)."""
     difference = np.abs(pose - other)
     places = np.hypot(difference[..., 0], difference[..., 1]) / mechanism.length_scale
     return np.maximum(places, difference[..., 2]).max(axis=1)
@@ -187,7 +188,7 @@ def _growth(
     seed: int,
     nudge: float,
 ) -> Array:
-    """Growth factor (times,) of a random initial disturbance; 1 where the reference's own error could explain it."""
+    """Growth factor (times,) of a random initial disturbance. It is 1 if the reference's error can explain it."""
     dynamics, random = Dynamics(mechanism), np.random.default_rng(seed)
     unit = mechanism.pose_unit
     none = np.ones(len(motion.t))
@@ -200,7 +201,7 @@ def _growth(
     bodies = tuple(replace(body, pose=tuple(at), twist=tuple(rate)) for body, at, rate in states)
     try:
         disturbed = run(replace(mechanism, bodies=bodies))
-    except InvalidMechanism:  # the disturbed mechanism can't be assembled or integrated
+    except InvalidMechanism:  # The disturbed mechanism can't be assembled or integrated.
         return none
 
     def size(other: Trajectory) -> Array:
@@ -210,28 +211,28 @@ def _growth(
     apart_by = np.nan_to_num(size(disturbed), nan=np.inf)
     if not apart_by[0] > REMAINING_SHARE * nudge:
         return none
-    # Near a singular position the error of the reference motion grows too; it does not count as a disturbance.
+    # Near a singular position the error of the reference motion grows too. This growth does not count.
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-START_AGREEMENT = 1e-6  # Relative to the largest acceleration; it allows for rounding with badly scaled masses.
-# Accuracy of the reference motion, relative to the mechanism's speed and largest force; smaller values count as zero.
+START_AGREEMENT = 1e-6  # Relative to the largest acceleration. Badly scaled masses amplify rounding.
+# Speeds and forces below this share of the mechanism's speed or largest force count as zero.
 ZERO_SHARE = 1e-9
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
 
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Errors of a run at its samples (times,); NaN after the run has diverged, and for values that are not compared."""
+    """Errors of a run at its samples. NaN means that the run has diverged, or that the value is not compared."""
 
     t: Array
-    of: dict[str, Array]  # Keys of ERROR_UNITS -> (times,).
-    whole: Array  # `pose_distance` from the ideal motion; its maximum is compared with the tolerance.
+    of: dict[str, Array]  # Key of ERROR_UNITS -> errors (times,).
+    whole: Array  # `pose_distance` (times,) from the ideal motion. The maximum is compared with the tolerance.
     finished: bool
 
     @property
     def largest(self) -> float:
-        """The largest `whole`; infinite for a run that gave up."""
+        """The maximum of `whole`, or infinity for a run that diverged."""
         return float(np.nanmax(self.whole)) if self.finished else float("inf")
 
     @property
@@ -246,8 +247,8 @@ class Errors:
 def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
     """Errors of a run at the samples of the reference motion.
 
-    jumps: the run starts with velocities that its joints do not allow. The ideal motion changes them by an impulse at
-    t = 0, but a run needs one or more steps. So forces and energy at the first two samples are not compared.
+    jumps: whether the joints do not allow the initial velocities. The ideal motion changes them by an impulse at t = 0,
+    but a run needs one or more steps. So forces and energy at the first two samples are not compared.
     """
     difference = run.pose - truth.pose
     angle = np.abs(difference[..., 2]).max(axis=1)
@@ -255,7 +256,7 @@ def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jum
     kinetic = 0.5 * np.sum(mechanism.inertias * truth.twist**2, axis=(-2, -1))
     span = float(kinetic.max())
     fast = mechanism.length_scale / mechanism.time_scale
-    # A mechanism that is at rest except for rounding has no kinetic energy to which a loss could be related.
+    # The drift is relative to the kinetic energy, so it is not defined for a mechanism at rest.
     moves = span > 0.5 * float(mechanism.inertias[:, 0].max()) * (ZERO_SHARE * fast) ** 2
     drift = np.abs(energy(mechanism, run) - energy(mechanism, truth)) / span if moves else np.full_like(angle, np.nan)
     reaction = _reaction(mechanism, truth, run)
@@ -267,11 +268,11 @@ def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jum
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
-    """The largest relative error (times,) of the unique joint reactions; NaN where the run has none.
+    """The largest relative error (times,) of the unique joint reactions. It is NaN if the run has no reactions.
 
-    Forces and moments are two kinds, each relative to its largest ideal reaction, or to the largest acting force (times
-    the length for moments) if all ideal reactions of the kind are rounding. The force of a joint is compared as a
-    vector, so that the error does not depend on the axes.
+    Force errors are relative to the largest ideal force, and moment errors to the largest ideal moment. If these are
+    only rounding, errors are relative to the largest acting force, which is multiplied by the length for moments. The
+    force of a joint is compared as a vector, so the error does not depend on the axes.
     """
     out = np.full(len(run.t), np.nan)
     if not mechanism.row_count:
@@ -291,14 +292,14 @@ def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array
         scale = scale if scale > ZERO_SHARE * largest_force * arm else largest_force * arm
         if scale > 0:
             off = [np.linalg.norm(run.reaction[:, row] - truth.reaction[:, row], axis=1) / scale for row in rows]
-            # fmax ignores NaN, the force of a joint that the engine does not report, such as a prescribed crank.
+            # fmax ignores NaN. The engine does not report some forces, such as that of a prescribed crank.
             out = np.fmax(out, np.fmax.reduce(off, axis=0))
     return out
 
 
 @dataclass(frozen=True)
 class Opening:
-    """The largest constraint violation: row, gap [m or rad] and time [s]."""
+    """The largest constraint violation, with its row, gap [m or rad] and time [s]."""
 
     row: str
     gap: float
@@ -307,7 +308,7 @@ class Opening:
 
 
 def find_opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
-    """The largest constraint violation of a run; None without constraints."""
+    """The largest constraint violation of a run, or None without constraints."""
     if not mechanism.row_count:
         return None
     gap = np.abs(mechanism.gap(run.pose, run.t))
@@ -320,8 +321,8 @@ def find_opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
 def refuse_disagreement(reading: Reading) -> float:
     """Relative difference of the accelerations at t = 0 between the engine and the judge.
 
-    The judge includes the engine's declared softness. Raises Unsupported if the difference exceeds START_AGREEMENT; the
-    message names an element of the model if removing it restores agreement.
+    The judge uses the declared softness of the engine. Raises Unsupported if the difference exceeds START_AGREEMENT.
+    The message names an element of the model if the accelerations agree without it.
     """
     mechanism, model = reading.mechanism, reading.model
     give = model.regularisation(np.zeros(mechanism.row_count), mechanism.pose) if model.has_soft_joints else None

@@ -1,10 +1,10 @@
-"""The ideal motion of a mechanism of one freedom along its configuration curve, also through singular positions.
+"""The ideal motion of a mechanism with one freedom along its configuration curve, also through singular positions.
 
-With the arc length s of the curve in the metric of the mass matrix, q' = tau(q) v and v' = tau . f, where v = s'. tau
-spans the null space of the rows, with tau^T M tau = 1. f are the applied forces; ideal joints do no work along tau.
-The equations contain no multipliers, so that no small singular value is a divisor. If two rows become dependent, as at
-a dead centre of a parallelogram, the null space has further directions. Finite forces leave the velocity continuous, so
-tau is then the direction of the null space that is closest to the previous one.
+The arc length s of the curve is measured in the metric of the mass matrix M. The equations are q' = tau(q) v and
+v' = tau^T f with the speed v = s' and the applied forces f, since ideal joints do no work along tau. The vector tau
+spans the null space of the rows, and tau^T M tau = 1. The equations contain no multipliers, so there is no division by
+a small singular value. If two rows become dependent, as at a dead centre of a parallelogram, the null space has further
+directions. The velocity is continuous for finite forces, so tau is then the direction closest to the previous tau.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-# Ratio to the largest singular value of the scaled rows below which a direction counts as allowed. Where two curves
-# cross, a drift d off the curve leads to the other curve unless this ratio is well above the root of d; d is at most
-# 1e-12 of the length. The direction of motion may turn by about this ratio near a crossing, so the error there is about
-# its square, 1e-8, and it decreases afterwards. On parallelograms errors were below 1e-9 with 1e-5, 1e-4 and 1e-3.
+# The rows allow a direction if its singular value is below this share of the largest singular value. Where two curves
+# cross, a drift d can lead to the wrong curve unless this share is far above sqrt(d). The drift is at most 1e-12 of the
+# length. Near a crossing the direction of motion may turn by about this share, which causes an error of about 1e-8.
+# On parallelograms the errors were below 1e-9 with the shares 1e-5, 1e-4 and 1e-3.
 NULL_SPACE_TOLERANCE = 1e-4
-CURVE_BODY_LIMIT = 40  # The limit bounds the time: each evaluation decomposes all rows.
+CURVE_BODY_LIMIT = 40  # For more bodies the decomposition of all rows at each evaluation would take too long.
 
 
 def has_one_freedom(mechanism: Mechanism) -> bool:
@@ -38,9 +38,9 @@ def has_one_freedom(mechanism: Mechanism) -> bool:
 
 
 def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Trajectory:
-    """The motion at times t (times,) [s] of a mechanism for which `has_one_freedom`; NaN after the integration fails.
+    """The motion of a mechanism with one freedom at times t (times,) [s]. It is NaN after the integration has failed.
 
-    `tolerance` is the relative error of a step.
+    tolerance: relative error of a step.
     """
     states, tangent, count = _states(mechanism, t, tolerance), _Tangent(mechanism), mechanism.pose.size
     pose, twist, acceleration = (np.full((len(t), *mechanism.pose.shape), np.nan) for _ in range(3))
@@ -55,7 +55,7 @@ def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Traj
 
 
 class _Tangent:
-    """tau (3 bodies,) at a pose (3 bodies,), without a change of sign from the previous evaluation."""
+    """The direction tau (3 bodies,) at a pose (3 bodies,). Its sign does not change between evaluations."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism, self.root = mechanism, np.sqrt(mechanism.inertias.reshape(-1))
@@ -71,7 +71,7 @@ class _Tangent:
         return self.last
 
     def _allowed(self, pose: Array) -> Array:
-        """Basis (directions, 3 bodies) of the null space, orthonormal after scaling by the roots of the inertias."""
+        """Orthonormal basis (directions, 3 bodies) of the null space, in coordinates scaled by sqrt(inertia)."""
         rows = self.mechanism.joint_rows.dense(pose) / self.root
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
         _, values, right = np.linalg.svd(rows / np.where(sizes > 0, sizes, 1.0), full_matrices=True)
@@ -80,7 +80,7 @@ class _Tangent:
 
 
 def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
-    """q and v (times, 3 bodies + 1); NaN after the integration fails."""
+    """The states q, v (times, 3 bodies + 1). They are NaN after the integration has failed."""
     tangent, count = _Tangent(mechanism), mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     start = float(tangent.last @ (mechanism.inertias.reshape(-1) * mechanism.twist.reshape(-1)))
@@ -104,7 +104,7 @@ def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
 
 
 def _acceleration(mechanism: Mechanism, pose: Array, twist: Array, along: Array) -> Array:
-    """Acceleration (bodies, 3): the forces determine the part along the curve, the rows' bias the part across it."""
+    """Acceleration (bodies, 3). Forces determine its part along the curve, and the rows' bias determines the rest."""
     rows = mechanism.joint_rows.dense(pose)
     bias = mechanism.bias(pose, twist)
     root = np.sqrt(mechanism.inertias.reshape(-1))

@@ -1,4 +1,4 @@
-"""Two pictures of a check: the errors over time, and the mechanism at the time of its largest error."""
+"""The two pictures of a check. They show the errors over time, and the mechanism at the time of the largest error."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, 
 
 Array = NDArray[np.float64]
 Lines = list[list[list[float]]]  # (line, point, coordinate) [m].
-Curves = dict[str, list[float]]  # Errors over time by quantity, in its unit.
-SMALLEST_DRAWN = 1e-16  # Smaller errors are drawn with this value on a logarithmic axis.
+Curves = dict[str, list[float]]  # Quantity -> errors over time, in the unit of the quantity.
+SMALLEST_DRAWN = 1e-16  # A smaller error is drawn at this value, since the axis is logarithmic.
 BAR_STYLE: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 
 @dataclass(frozen=True)
 class Pose:
-    bars: Lines  # A polygon for each body through its joints.
+    bars: Lines  # For each body a polygon through its joints.
     links: Lines  # Rods and springs.
     rails: Lines  # Guides of slides on the ground.
 
@@ -37,14 +37,14 @@ class PictureData:
     t: list[float]  # s.
     own: Curves  # Errors of the user's settings at `t`.
     judge_t: list[float]
-    judge: Curves  # errors of the judge at `judge_t`
+    judge: Curves  # Errors of the judge at `judge_t`.
     advised_t: list[float]
-    advised: Curves | None  # Errors of other settings at `advised_t`; None if the user's settings meet the tolerance.
-    horizon: float | None  # s from which on errors grow exponentially; None if they do not.
-    moment: float  # s; time of the largest error of the user's settings.
+    advised: Curves | None  # Errors of the advised settings at `advised_t`. None if there are no such settings.
+    horizon: float | None  # Time [s] after which errors grow exponentially, or None if they do not.
+    moment: float  # Time of the largest error of the user's settings [s].
     ground: list[list[float]]  # Ground points (points, 2) [m].
-    ideal: Pose  # At `moment`, with ideal joints.
-    found: Pose  # At `moment`, with the user's settings.
+    ideal: Pose  # Pose at `moment` with ideal joints.
+    found: Pose  # Pose at `moment` with the user's settings.
     label: str = "your settings"
 
     def as_text(self) -> str:
@@ -57,7 +57,7 @@ def picture_data_from_text(text: str) -> PictureData:
 
 
 def picture_data_of(result: CheckResult, advised: SettingRun | None = None) -> PictureData:
-    """The data of a check; `advised`: the second settings in the picture, the check's advised ones if None."""
+    """The data of a check. advised: the run with the second settings in the picture, by default the advised ones."""
     advised = advised or result.advised
     other = None if advised is None or result.met else advised.errors
     mechanism = result.reading.mechanism
@@ -73,7 +73,7 @@ def picture_data(
     other: Errors | None = None,
     label: str = PictureData.label,
 ) -> PictureData:
-    """The data of a run with the errors `own`; `other`: errors of a run with advised settings."""
+    """The data of a run. own: errors of this run. other: errors of a run with the advised settings."""
     quantities = [quantity for quantity in ERROR_UNITS if np.isfinite(own.of[quantity]).any()]
     sample = int(np.argmax(np.where(np.isfinite(own.whole), own.whole, -1.0)))
 
@@ -97,7 +97,7 @@ def picture_data(
 
 
 def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
-    """The lines of a pose (bodies, 3) [m, m, rad]; the line of a body with one joint ends at its centre of mass."""
+    """The lines of a pose (bodies, 3) [m, m, rad]. A body with one joint is a line from joint to centre of mass."""
 
     def point(name: str | None, local: tuple[float, float]) -> Array:
         if name is None:
@@ -115,7 +115,7 @@ def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
     for link in (*mechanism.joints, *mechanism.forces):
         if link.acts_along_line:
             first, second = (point(*end) for end in link.points)
-            if np.linalg.norm(second - first) < 3 * extent:  # A longer line represents a spring along a slide.
+            if np.linalg.norm(second - first) < 3 * extent:  # A longer line is not drawn.
                 links.append([first.tolist(), second.tolist()])
     for name, points in body_points(mechanism, pose).items():
         centre = pose[mechanism.body_index(name)][:2]
@@ -124,7 +124,7 @@ def pose_lines(mechanism: Mechanism, pose: Array) -> Pose:
 
 
 def render_pictures(shown: PictureData) -> dict[str, tuple[str, str]]:
-    """(title, SVG) of the pictures 'errors' and 'worst'."""
+    """Name ('errors' or 'worst') -> (title, SVG)."""
     named = {
         "errors": (f"Errors of {shown.label} over time, beside the judge's own error", _errors(shown)),
         "worst": (f"The mechanism at {shown.moment:.3g} s, where the error of {shown.label} is largest", _worst(shown)),
@@ -189,7 +189,7 @@ def draw_plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) 
 
 
 def draw_ideal(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
-    """Draw the pose of ideal joints with solid lines."""
+    """Draw the ideal pose with solid lines."""
     _draw(panel, pose.rails, linewidth=0.6, color=theme.ink, alpha=0.5)
     _draw(panel, pose.links, linewidth=1.0, color=theme.ink)
     _draw(panel, pose.bars, label, color=theme.ink, linewidth=3.0, markersize=6, **BAR_STYLE)

@@ -1,4 +1,4 @@
-"""The report of a check as plain text, as Markdown with picture files, and as one HTML file."""
+"""Functions that render the report of a check as plain text, as Markdown and as HTML."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def plain(sections: Sequence[Section], width: int = 120) -> str:
 
 
 def markdown(name: str, sections: Sequence[Section], files: dict[str, str]) -> str:
-    """`files`: the path of each picture's file by the picture's title."""
+    """The report as Markdown. files: title of a picture -> path of its file."""
     lines = [f"# {' '.join(name.split())}", ""]
     for section in sections:
         lines += [f"## {section.title}", ""] if section.title else []
@@ -89,7 +89,7 @@ def body(name: str, sections: Sequence[Section]) -> str:
             table = "".join(f"<tr>{row}</tr>\n" for row in rows)
             lines.append(f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{table}</tbody>\n</table>")
         if section.picture is not None:
-            # As <img>, since identifiers of clip paths in two inline SVG elements would collide.
+            # An <img> avoids a conflict between identifiers of clip paths in two inline SVG elements.
             title, svg = section.picture
             source = f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}"
             lines.append(f'<p><img src="{source}" alt="{escape(title)}" /></p>')

@@ -1,6 +1,6 @@
-"""The request and the report of a check; both can be pickled, since a check runs in a supervised process.
+"""The request and the report of a check. Both can be pickled, since a check runs in a supervised process.
 
-That process runs the user's script, so that the command continues if the script raises, exits or never ends.
+The supervised process runs the user's script, so the command continues if the script raises, exits or never ends.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from reports.check.checked import SweepPlan
     from reports.check.rendering import Section
 
-DEFAULT_TOLERANCE = 1e-4  # Error of the advised settings if the user gave no tolerance.
-MAX_DURATION = 1000.0  # s of motion.
+DEFAULT_TOLERANCE = 1e-4  # Tolerance for the advised settings if the user gives none.
+MAX_DURATION = 1000.0  # Longest duration of a motion [s].
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class CheckRequest:
     `without`, `key` and `step` are described in `ReadingTerms`, `quick` and `everything` in `SweepPlan`.
     """
 
-    word: str  # the model as on the command line, relative to `folder`
+    word: str  # The model as on the command line; a path is relative to `folder`.
     folder: str
     duration: float = 2.0  # s.
     tolerance: float | None = None  # None: not given.
@@ -41,7 +41,7 @@ class CheckRequest:
     notes: str = ""  # Path of the file to which the progress is written.
 
     def refuse_bad(self) -> CheckRequest:
-        """Return the request itself. Raises BadInput for a number out of its range."""
+        """Return the request. Raises BadInput if a number is out of range."""
         tolerance = "fix-to" if self.search else "tolerance"
         for name, value, most in (("duration", self.duration, MAX_DURATION), (tolerance, self.tolerance, 1.0)):
             if value is not None and not 0 < value <= most:
@@ -74,11 +74,11 @@ class CheckReport:
     sections: tuple[Section, ...]
     line: tuple[str, ...]  # The row in the table of a folder.
     data: dict[str, Any]  # The JSON document.
-    trouble: str = ""  # Why --apply wrote nothing.
+    trouble: str = ""  # The reason if --apply has written no file.
 
     @property
     def fine(self) -> bool:
-        """Whether the user's tolerance, if given, is met by the user's settings or by those of --fix-to or --apply."""
+        """Whether the user gave no tolerance, or settings of the user, of --fix-to or of --apply meet it."""
         mended = (self.request.search or self.data["applied"] is not None) and self.data["advised"] is not None
         return self.request.tolerance is None or self.data["met"] or mended
 
@@ -101,8 +101,8 @@ class Refused:
 
 
 def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
-    """Run the check in this process; `model`: an object of an engine instead of a file."""
-    # Imported here, since a command that only makes requests does not need them.
+    """Run the check in this process. model: a model object that replaces the file."""
+    # These imports are here since a command that only makes requests does not need them.
     from engines import Unsupported
     from engines.importers import read_object
     from engines.reading import ReadingTerms
@@ -133,7 +133,7 @@ def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused
         )
         name = reading.title or Path(request.word).name
         result = check(reading, name, request.duration, tolerance, note, request.plan, request.tolerance is not None)
-    except (Unsupported, ValueError) as reason:  # InvalidMechanism is a ValueError
+    except (Unsupported, ValueError) as reason:  # This includes InvalidMechanism.
         return Refused(refusal(reason))
     if request.apply:
         note("writing the advised settings and running them")
@@ -143,7 +143,7 @@ def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused
             trouble = refusal(reason)
     if request.pictures:
         note("drawing")
-        from reports.check.pictures import picture_data_of, render_pictures  # a second of imports
+        from reports.check.pictures import picture_data_of, render_pictures  # This import takes a second.
 
         svg_pictures = render_pictures(picture_data_of(result))
     report_parts = answer_section(result), report_sections(result, svg_pictures), summary_row(result)

@@ -1,4 +1,4 @@
-"""The sweep over documented settings within a budget of CPU time, and the choice of the cheapest sufficient one."""
+"""The sweep over documented settings within a CPU time limit, and the choice of the cheapest sufficient setting."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
 from reports.check.judging import Errors, measure_errors
 
-MAX_RUN_TIME = 1.0  # s of CPU time for one run; smaller steps are left out.
+MAX_RUN_TIME = 1.0  # Longest CPU time of one run [s]. Steps that need more are left out.
 HELPFUL_RATIO = 0.75  # A smaller step is helpful if it reduces the error below this share of the previous error.
-SATURATED_ERROR = 1.0  # rad, or lengths of the mechanism: the causes of a larger error can't be separated.
-# Relative change below which a saturated error counts as constant: two coarse steps seldom agree so well by chance.
+SATURATED_ERROR = 1.0  # The causes of a larger error [rad, or lengths of the mechanism] can't be separated.
+# A saturated error is constant if its relative change is smaller. Two coarse steps seldom agree so well by chance.
 SATURATED_CHANGE = 0.01
-SMALLER_STEPS = 4  # number of smaller steps at which the user's settings run to separate the causes of the error
+SMALLER_STEPS = 4  # Number of smaller steps with the user's settings, which separate the causes of the error.
 
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """The choice of documented settings that are tried."""
+    """Options that determine which documented settings are tried."""
 
-    patience: float  # s of CPU time for all settings.
+    patience: float  # CPU time for all settings [s].
     goal: float | None = None  # Try smaller steps until the error of a setting is at most this value.
     quick: bool = False  # Try four settings, and integrate the declared motion with a larger tolerance.
     everything: bool = False  # Also try settings that are too expensive to be advised.
@@ -36,7 +36,7 @@ class SettingRun:
     change: Change
     errors: Errors
     run: Trajectory
-    front: bool = False  # whether no other setting in the table is both cheaper and more accurate
+    front: bool = False  # Whether no other setting in the table is both cheaper and more accurate.
 
     @property
     def error(self) -> float:
@@ -62,9 +62,10 @@ def run_settings_sweep(
     plan: SweepPlan,
     tolerance: float,
 ) -> list[SettingRun]:
-    """Run the documented settings, those with large steps first; return the user's settings first.
+    """Run the documented settings, beginning with large steps. In the result the user's settings come first.
 
-    A setting is left out if its estimated CPU time is too long: the number of steps times the measured time of a step.
+    The estimated CPU time of a setting is the number of steps times the measured time of a step. A setting is left out
+    if this time is too long.
     """
     model = reading.model
 
@@ -103,7 +104,7 @@ def run_settings_sweep(
 
 
 def _cost_limit(table: list[SettingRun], tolerance: float) -> float:
-    """CPU time [s] of the cheapest setting with a tenth of the advised setting's error; infinite without one."""
+    """CPU time [s] of the cheapest setting with a tenth of the advised setting's error. Infinite if there is none."""
     advised = cheapest(table, tolerance)
     decade = None if advised is None else cheapest(table, advised.error / 10)
     return float("inf") if decade is None else decade.cost
@@ -132,14 +133,14 @@ def _has_plateaued(table: list[SettingRun]) -> bool:
 
 
 def cheapest(table: list[SettingRun], tolerance: float) -> SettingRun | None:
-    """The cheapest setting whose error is within the tolerance; None without one."""
+    """The cheapest setting whose error is within the tolerance, or None if there is none."""
     return min(
         (setting for setting in table if setting.error <= tolerance), key=lambda setting: setting.cost, default=None
     )
 
 
 def pareto_front(table: list[SettingRun]) -> list[SettingRun]:
-    """The settings for which no other is both cheaper and more accurate, the cheapest first."""
+    """The settings, cheapest first, for which no other setting is both cheaper and more accurate."""
     out: list[SettingRun] = []
     for setting in sorted(table, key=lambda setting: (setting.cost, setting.error)):
         if np.isfinite(setting.error) and (not out or setting.error < out[-1].error):
@@ -148,6 +149,6 @@ def pareto_front(table: list[SettingRun]) -> list[SettingRun]:
 
 
 def runs_by_step(table: list[SettingRun], user: SettingRun) -> list[SettingRun]:
-    """Runs of the user's own settings, the largest step first."""
+    """Runs with the user's settings at different steps, the largest step first."""
     same_options = [setting for setting in table if setting.change.options == user.change.options]
     return sorted(same_options, key=lambda setting: -setting.change.dt)

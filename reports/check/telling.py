@@ -14,13 +14,13 @@ from reports.check.rendering import Section
 from reports.check.settings import SATURATED_ERROR, SettingRun, pareto_front
 from reports.write import tables
 
-NOTES_LISTED = 4  # Notes on elements in the short report.
-CHEAPER_COST = 0.9  # Of the user's CPU time; a cost above it may differ from the user's only by noise of the clock.
-BETTER_ERROR = 0.9  # Of the previous row's error; the first screen leaves out a setting with a larger error.
+NOTES_LISTED = 4  # Largest number of notes on elements in the short report.
+CHEAPER_COST = 0.9  # Above this share of the user's CPU time, a difference may be noise of the clock.
+BETTER_ERROR = 0.9  # The first screen leaves out a setting whose error exceeds this share of the previous row's error.
 CUT_NOTE = (
     "; beyond {:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing is compared there"
 )
-ROUNDING_ERROR = 1e-12  # rad, or lengths of the mechanism; smaller errors are rounding
+ROUNDING_ERROR = 1e-12  # Smaller errors [rad, or lengths of the mechanism] are rounding.
 SETTINGS_HEADER = ("setting", "largest error", "reaction error", "CPU, ms", "")
 number = partial(tables.number, infinite="gave up")
 
@@ -56,7 +56,7 @@ def report_sections(result: CheckResult, pictures: dict[str, tuple[str, str]] | 
 
 
 def summary_row(result: CheckResult) -> tuple[str, ...]:
-    """The row in the table of a folder: error, cause, advised settings, their error, and their relative CPU time."""
+    """The row of a model in the table of a folder."""
     user, advised = result.table[0], result.advised
     advice = ("none that was tried", "-", "-")
     if advised is not None:
@@ -112,14 +112,14 @@ def _forces(result: CheckResult) -> str:
         ("energy", "energy (kinetic, and of gravity and springs) by", "of the largest kinetic one"),
     ):
         if not math.isnan(worst := errors.worst[name]):
-            # An engine needs some steps for an initial impulse, so the time of the largest error is printed too.
+            # An engine needs some steps for an initial impulse. So the time of the largest error is printed too.
             when = f", at {errors.t[int(np.nanargmax(errors.of[name]))]:.3g} s" if result.reading.jumps else ""
             sentences.append(f"{start} {number(worst)} {end}{when}")
     return "; ".join(sentences)
 
 
 def _sensitivity(result: CheckResult) -> str:
-    """How fast neighbouring motions diverge, and the consequence for the error."""
+    """A sentence on the divergence of neighbouring motions and its effect on the error."""
     judge = result.judge
     if result.facts.locked:
         return "nothing can move: the joints leave no freedom, and the error is how far they give way"
@@ -259,7 +259,7 @@ def _opening(result: CheckResult) -> str:
 
 
 def _table(result: CheckResult) -> Section:
-    """All settings that were tried; of settings with equal errors only the cheapest, or the user's."""
+    """The table of all settings that were tried. Among settings with equal errors only one is shown."""
     groups: dict[tuple[str, str], list[SettingRun]] = {}
     for setting in result.table:
         groups.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)

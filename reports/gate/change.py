@@ -324,9 +324,9 @@ def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
 
 
 def cost(pairs: Iterable[tuple[Measurement, Old]]) -> float:
-    """The CPU time divided by the baseline's, summed over the cells for which both are known; NaN without such a cell.
+    """The total CPU time divided by that of the baseline, or NaN if no cell has both times.
 
-    The sum is dominated by the longest runs, since a run of a millisecond cannot be timed well.
+    Long runs dominate the total, since a run of a millisecond cannot be timed well.
     """
     timed = [
         (row.cpu, old.cpu)

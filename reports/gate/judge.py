@@ -101,7 +101,7 @@ def _compiled(
     soft: Regularisation | None,
     project: bool,
 ) -> Trajectory | None:
-    """The motion by compiled steps; None if rows are dependent, the motion is lost, or regularised joints are
+    """The motion by compiled steps, or None if rows are dependent, the motion is lost, or regularised joints are
     projected.
 
     Regularised rows may be dependent, since their compliances make the system regular.
@@ -120,7 +120,7 @@ def _compiled(
 
 
 def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel | None:
-    """The compiled mechanism, regularised if `soft` is given; None without numba."""
+    """The compiled mechanism, regularised if `soft` is given, or None without numba."""
     machine = CompiledModel.of(mechanism) if installed() else None
     if machine is not None and soft is not None:
         machine.regularise(soft, giving_way(mechanism, soft))

@@ -179,7 +179,7 @@ def pytest_report_header() -> list[str]:
 
 
 def case_of(item: pytest.Item) -> Case | None:
-    """The case of a test; None for a test without a case."""
+    """The case of a test, or None for a test without a case."""
     callspec = getattr(item, "callspec", None)
     value = callspec.params.get("case") if callspec is not None else None
     return value if isinstance(value, Case) else None

@@ -57,7 +57,7 @@ class CaseVerdict:
 
     @property
     def cost(self) -> float:
-        """The CPU time over that of the baseline; NaN if not known."""
+        """The CPU time over that of the baseline, or NaN if not known."""
         return cost(self.pairs)
 
     @property
@@ -71,7 +71,7 @@ class CaseVerdict:
 
     @property
     def worst(self) -> Check | None:
-        """The check of theory with the largest share of its bound; None if the engine cannot build the scene."""
+        """The check of theory with the largest share of its bound, or None if the engine cannot build the scene."""
         return nearest(self.theory) if self.theory else None
 
 

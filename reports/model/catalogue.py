@@ -47,7 +47,7 @@ def _no_scene(value: Any) -> str:
 
 
 def _by_defaults(cls: type) -> Scene | None:
-    """A scene of this class with its default numbers; None for a class that is no scene or has a required number."""
+    """A scene of this class with its default numbers, or None for a class that is no scene or has a required number."""
     if not (issubclass(cls, Scene) and is_dataclass(cls)) or inspect.isabstract(cls):
         return None
     if not isinstance(getattr(cls, "name", None), str):
@@ -63,7 +63,7 @@ _pages = registered("crosscheck.pages", PAGE, lambda page: page.name)
 
 
 def page_of(scene: Scene, pages: Sequence[Page] | None = None) -> Page | None:
-    """The page that teaches a scene, from `pages` or, if None, from PAGES; None if there is none."""
+    """The page that teaches a scene, from `pages` or, if None, from PAGES, or None if there is none."""
     return next((page for page in (PAGES if pages is None else pages) if page.teaches(scene)), None)
 
 

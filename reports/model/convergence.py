@@ -127,7 +127,7 @@ def _longest_run(mask: np.ndarray) -> tuple[int, int]:
 
 
 def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
-    """(limit, uncertainty) of errors whose last two intervals are flat; NaN for other errors.
+    """(limit, uncertainty) of errors whose last two intervals are flat, or NaN for other errors.
 
     One flat interval suffices if the errors rise to a limit from below, after two errors have cancelled at a coarser
     step.

@@ -1,4 +1,4 @@
-"""Errors of a trajectory relative to the exact motion at the same instants; NaN for a quantity without any."""
+"""Errors of a trajectory relative to the exact motion at the same instants, or NaN for a quantity without any."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ NAN = float("nan")
 
 
 def largest(values: Array) -> float:
-    """The largest absolute value, without NaN; NaN if there is no other value."""
+    """The largest absolute value, without NaN, or NaN if there is no other value."""
     values = np.abs(np.asarray(values, dtype=float))
     values = values[~np.isnan(values)]
     return float(values.max()) if values.size else NAN
 
 
 def root_mean_square(values: Array) -> float:
-    """The root mean square without NaN; NaN if there is no other value."""
+    """The root mean square without NaN, or NaN if there is no other value."""
     values = np.asarray(values, dtype=float)
     values = values[~np.isnan(values)]
     return float(np.sqrt(np.mean(values**2))) if values.size else NAN

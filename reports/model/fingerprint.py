@@ -136,7 +136,7 @@ def with_required(distributions: Iterable[str]) -> set[str]:
 
 @cache
 def _required(name: str) -> tuple[str, ...] | None:
-    """The requirements of a distribution; None if it is not installed, for example since it is for another system."""
+    """The requirements of a distribution. None if it is not installed, for example on another operating system."""
     try:
         requirements = metadata.requires(name) or []
     except metadata.PackageNotFoundError:

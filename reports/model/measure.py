@@ -49,7 +49,7 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True)
 class Measurement:
-    """The row of a cell. Errors have the units of `reports.model.quantities`; NaN if unknown. Costs are CPU seconds."""
+    """The row of a cell. An unknown error is NaN. Units of errors are in `reports.model.quantities`."""
 
     key: str
     purpose: str

@@ -100,7 +100,7 @@ def run_chunk(data: bytes) -> bytes:
 
 @contextmanager
 def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
-    """Connect to the cluster that `--scheduler` names; None without one. Raises BadInput."""
+    """Connect to the cluster that `--scheduler` names, or None without one. Raises BadInput."""
     if scheduler is None:
         yield None
         return

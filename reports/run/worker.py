@@ -47,7 +47,7 @@ _reading = threading.Lock()
 
 
 def cpu_time(process: int) -> float | None:
-    """CPU seconds of all threads of a process; None if the system does not report them for another process.
+    """CPU seconds of all threads of a process, or None if the system does not report them for another process.
 
     The number of the clock on Linux is that of clock_getcpuclockid(3). A CPU timer (ITIMER_PROF, RLIMIT_CPU) would
     reduce the resolution of this clock to 4 ms, and it also times the stepping, so none is set.
@@ -79,7 +79,7 @@ class Worker:
     used: bool = False
     job: Any = None  # A `supervisor.Job`; None while the worker is idle.
     awake: float = 0.0  # s since its start or the start of its job, without times at which the parent was asleep.
-    cpu: float | None = None  # s of CPU time at the start of its job; None if the system does not report it.
+    cpu: float | None = None  # s of CPU time at the start of its job, or None if the system does not report it.
 
     def used_cpu(self) -> float:
         now = cpu_time(self.process.pid or 0)

@@ -80,7 +80,7 @@ class RowComparison:
 
     @cached_property
     def cost(self) -> float:
-        """The median of the ratios of CPU times; NaN if no pair was timed."""
+        """The median of the ratios of CPU times, or NaN if no pair was timed."""
         timed = [pair for pair in self.pairs if all(Outcome(row.outcome).comparable and row.cpu > 0 for row in pair)]
         return median(later.cpu / earlier.cpu for earlier, later in timed) if timed else math.nan
 

@@ -39,9 +39,9 @@ class Entry:
     variant: str
     step: float  # s
     quantity: str
-    error: float  # largest of `quantity`, relative to the largest acceleration for random trees; NaN without a motion
+    error: float  # Largest error of `quantity`, or NaN without a motion. In random trees it is relative.
     outcome: str
-    cpu: float  # s per simulated second; NaN for random trees.
+    cpu: float  # s per simulated second, or NaN for random trees.
     sentence: str  # The reason for a missing error; for random trees the number of wrong ones.
 
     @property

@@ -190,7 +190,7 @@ def test_the_judge_agrees_with_newtons_law_in_random_mechanisms(number: int) -> 
 
 
 class WitnessedCase(NamedTuple):
-    """The comparison of a motion, in rad and in units of the mechanism's length and time; NaN if it ends early.
+    """The comparison of a motion, in rad and in units of the mechanism's length and time, or NaN if it ends early.
 
     resolved: whether the judge claims JUDGE_CLAIM
     difference: largest difference between judge and witness
