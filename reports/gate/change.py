@@ -1,9 +1,9 @@
-"""The regression gate, which compares each row with the same cell of a baseline: the errors.csv of an earlier run.
+"""The regression gate. It compares each row with a baseline, which is the errors.csv of an earlier run.
 
-The effect of rounding is measured by runs of a mechanism whose numbers differ by one rounding: masses, inertias,
-gravity, and the points of joints and forces. A change of the start alone does not suffice, since a prescribed or
-projected motion does not depend on its last bit. The order of the bodies is not changed: another order changes MuJoCo's
-tree of joints and the order of pymunk's solver iterations, and thus the errors.
+The effect of rounding is measured in runs whose masses, inertias, gravity and points are changed by one rounding. A
+change of the initial state alone does not suffice, since a prescribed or projected motion does not depend on its last
+bit. The bodies keep their order. Another order would change MuJoCo's tree and pymunk's solver iterations, and with them
+the errors.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ from reports.model.quantities import QUANTITIES, rounding_tolerance
 from reports.write.csv_files import DIGESTS, not_as_written, read_lines
 from reports.write.provenance import still_installed
 
-# (scene, method, samples, steps per sample): identifies a cell in all runs, even if its settings have changed.
+# (scene, method, samples, steps per sample) identifies a cell in all runs, even if its settings have changed.
 Identity = tuple[str, str, int, int]
 IDENTITY = ("scene", "engine", "variant", "samples", "every")  # Columns of errors.csv that define a cell.
-TIMINGS_FILE = "timings.csv"  # Beside errors.csv; its comments hold the versions (`reports.write.provenance.versions`).
-MOST_FILES_NAMED = 5  # Number of files that a message names.
+TIMINGS_FILE = "timings.csv"  # This file is beside errors.csv. Its comments contain the versions.
+MOST_FILES_NAMED = 5  # Largest number of files that a message names.
 
 
 class BadBaseline(ValueError):
-    """A baseline file is not a valid errors.csv; the message is one line with the reason."""
+    """The error that a baseline file is not a valid errors.csv. The message is one line with the reason."""
 
 
 @dataclass(frozen=True)
 class Old:
     """A cell of a baseline.
 
-    reaction_rows: constraint rows with a reported reaction. cpu: CPU seconds per simulated second, NaN if not timed.
+    reaction_rows: constraint rows with a reported reaction. cpu: CPU seconds per simulated second, or NaN if unknown.
     """
 
     outcome: Outcome
@@ -55,8 +55,7 @@ class Old:
 
 @dataclass(frozen=True)
 class Baseline:
-    """The cells of an earlier run, its versions ("" if unknown), the folder of its file, and the quantities for which
-    the file has no column (`unmeasured`)."""
+    """The cells of an earlier run. versions: "" if unknown. unmeasured: quantities for which the file has no column."""
 
     cells: Mapping[Identity, Old]
     versions: str = ""
@@ -65,15 +64,15 @@ class Baseline:
 
     @property
     def same_versions(self) -> bool:
-        """Whether the installed packages have the versions of the baseline, or these versions are unknown.
+        """Whether the installed packages have the versions of the baseline. True if these versions are unknown.
 
-        If so, rows are checked by `change`, otherwise by `drift`.
+        Rows with the same versions are checked by `change`, and other rows by `drift`.
         """
         return self.versions == "" or still_installed(self.versions)
 
 
 def mixed(baseline: Baseline) -> str:
-    """A sentence if the baseline and the pages in its folder belong to different reports, else an empty string."""
+    """An error message if the baseline and the pages in its folder belong to different reports, else empty."""
     if baseline.folder is None or not (baseline.folder / "index.md").exists():
         return ""
     others = not_as_written(baseline.folder)
@@ -91,14 +90,14 @@ def identity(row: Measurement) -> Identity:
 
 
 def _identity(row: Mapping[str, str]) -> Identity:
-    """The identity of the cell of a CSV row. Raises ValueError or TypeError for a damaged row."""
+    """The key of a CSV row's cell. Raises ValueError or TypeError for a damaged row."""
     return row["scene"], f"{row['engine']} {row['variant']}", int(row["samples"]), int(row["every"])
 
 
 def _read_timings(path: Path) -> tuple[str, dict[Identity, float]]:
-    """(versions, CPU seconds per simulated second by cell) from the timings.csv beside an errors.csv.
+    """(versions, cell -> CPU seconds per simulated second) from the timings.csv beside an errors.csv.
 
-    The versions are empty and cells are missing if the file cannot be read.
+    If the file cannot be read, the versions are empty and cells are missing.
     """
     seconds: dict[Identity, float] = {}
     remarks: list[str] = []
@@ -111,7 +110,7 @@ def _read_timings(path: Path) -> tuple[str, dict[Identity, float]]:
 
 
 def read_baseline(path: Path) -> Baseline:
-    """Read an errors.csv. Raises BadBaseline for a missing file or one of another kind."""
+    """Read an errors.csv. Raises BadBaseline if the file is missing or is not a valid errors.csv."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -137,7 +136,7 @@ def read_baseline(path: Path) -> Baseline:
     return Baseline(cells, versions, path.parent, tuple(name for name in names if name not in columns))
 
 
-SEEDS = (1, 2, 3)  # seeds of the changes by one rounding
+SEEDS = (1, 2, 3)  # Seeds of the changes by one rounding.
 EPSILON = float(np.finfo(float).eps)
 
 Part = TypeVar("Part")
@@ -145,10 +144,10 @@ Part = TypeVar("Part")
 
 @dataclass(frozen=True)
 class Altered(EngineWrapper):
-    """An engine that builds `change(mechanism)` with another engine.
+    """An engine that builds `change(mechanism)` with the wrapped engine.
 
-    It has the name of that engine, and its declarations for the unchanged mechanism. `change` is a callable frozen
-    dataclass, so that it can be compared, printed and sent to other processes.
+    It has the name of the wrapped engine, and that engine's declarations for the unchanged mechanism. `change` is a
+    callable frozen dataclass, so it can be compared, printed and sent to other processes.
     """
 
     engine: Engine
@@ -159,26 +158,26 @@ class Altered(EngineWrapper):
         return self.engine.variant
 
     def stepped(self, mechanism: Mechanism) -> Engine:
-        """This engine, since it builds the changed mechanism."""
+        """Return this engine, since it builds the changed mechanism."""
         return self
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """The times at which the engine evaluates the model of the changed mechanism, with the unchanged scene."""
+        """The instants at which the wrapped engine evaluates the changed mechanism."""
         return self.engine.stepped(mechanism).instants(mechanism, dt, steps, self.change(mechanism))
 
     def build(self, mechanism: Mechanism, dt: float) -> Run:
-        """Build the changed mechanism. Errors of the change and of the engine are raised without a change."""
+        """Build the changed mechanism. Exceptions of `change` and of the engine are raised."""
         return self.engine.build(self.change(mechanism), dt)
 
 
 @dataclass(frozen=True)
 class Nudge:
-    """Changes masses, inertias and vectors of a mechanism by -1, 0 or 1 rounding, drawn from the seed.
+    """A change of masses, inertias and vectors of a mechanism by -1, 0 or 1 rounding. The seed determines which.
 
-    Scalars of joints and forces (a gear's ratio, an angle) are not changed, since engines treat values such as 1
-    specially. Zeros remain zero.
+    Scalars of joints and forces, such as a gear's ratio or an angle, are not changed. Engines treat some values, such
+    as 1, specially. Zeros remain zero.
     """
 
     seed: int
@@ -211,25 +210,25 @@ def _rounded(values: tuple[Any, ...], random: np.random.Generator) -> Any:
 
 
 def nudged_cells(cell: Cell) -> tuple[Cell, ...]:
-    """One cell for each seed, with its mechanism changed by one rounding."""
+    """A cell for each seed. Its mechanism is changed by one rounding."""
     return tuple(replace(cell, engine=Altered(cell.engine, Nudge(seed))) for seed in SEEDS)
 
 
-# Largest allowed factor on an error with other versions: for example, two errors may no longer cancel.
+# With other versions an error may grow by this factor. For example, two errors may no longer cancel.
 WORSE = 3.0
-# sqrt(n) times the standard deviation of the median of n normal samples, divided by that of one sample.
+# The median of n normal samples has SCATTER / sqrt(n) times the standard deviation of one sample.
 SCATTER = 1.2533
-# Factor on the differences of the nudged runs, which are too few to contain the largest effect of rounding.
+# Safety factor on the differences of the nudged runs, which are too few to show the largest effect of rounding.
 NUDGE_ROOM = 10.0
-# Factor of the CPU time above which a remark is made. Other machines and other load cause smaller factors.
+# If the CPU time has grown by this factor, a remark is made. Another machine or load has a smaller effect.
 DEAR = 10.0
 
 
 def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), amplified: float = 1.0) -> tuple[Check, ...]:
-    """The checks of a row with the baseline's versions: its numbers must be equal within rounding.
+    """The checks that a row with the baseline's versions has equal numbers within rounding.
 
-    The bound is the `rounding_tolerance` of the quantity and the largest difference to `nudged`, rows of the cell
-    changed by one rounding. amplified: see `ConvergenceOrder`.
+    nudged: rows of the cell with mechanisms changed by one rounding. The bound is the sum of `rounding_tolerance` and
+    of the largest difference to these rows times NUDGE_ROOM. amplified: see `ConvergenceOrder`.
     """
     if not _has_numbers(row.outcome, old.outcome):
         same = row.outcome == old.outcome or any(other.outcome == old.outcome for other in nudged)
@@ -249,10 +248,7 @@ def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), ampli
 
 
 def _has_numbers(now: str, before: str) -> bool:
-    """Whether runs with these outcomes must have equal numbers: both are comparable, or both are unresolved.
-
-    The numbers of other runs are arbitrary.
-    """
+    """Whether runs with these outcomes must have equal numbers. The numbers of all other runs are arbitrary."""
     if now == before == Outcome.UNRESOLVED:
         return True
     return Outcome(now).comparable and Outcome(before).comparable
@@ -261,8 +257,8 @@ def _has_numbers(now: str, before: str) -> bool:
 def drift(row: Measurement, old: Old) -> tuple[Check, ...]:
     """The checks of a row with versions other than the baseline's.
 
-    No error may exceed WORSE times the baseline's error, or become NaN. The outcome must be equal, or improve to
-    comparable; `describe_improvements` reports an improvement.
+    An error may not become NaN or exceed WORSE times the baseline's error. The outcome must be equal or become
+    comparable.
     """
     if not (Outcome(row.outcome).comparable and old.outcome.comparable):
         return (_outcome(row, old, row.outcome == old.outcome or Outcome(row.outcome).comparable),)
@@ -288,7 +284,7 @@ def _reactions(row: Measurement, old: Old) -> tuple[Check, ...]:
 
 
 def describe_improvements(row: Measurement, old: Old) -> tuple[str, ...]:
-    """Sentences about numbers that the row has and the baseline lacks."""
+    """Sentences about numbers that are in the row and not in the baseline."""
     if not Outcome(row.outcome).comparable:
         return ()
     if not old.outcome.comparable:
@@ -298,12 +294,11 @@ def describe_improvements(row: Measurement, old: Old) -> tuple[str, ...]:
 
 
 def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
-    """One check for each method and quantity: whether errors have grown over all scenes with other versions.
+    """Checks, for each method and quantity, that the errors of all scenes together have not grown with other versions.
 
-    In one scene an error may change by a factor of WORSE by chance. The median of the logarithms of the factors of n
-    scenes has a scatter that is SCATTER / sqrt(n) times as large, so the bound is WORSE to this power. The cells of a
-    scene are not independent, so each scene contributes the median of its factors. Errors below rounding have the
-    factor 1.
+    In one scene an error may change by a factor of WORSE by chance. The median factor of n scenes varies less, so its
+    bound is WORSE ** (SCATTER / sqrt(n)). The cells of a scene are not independent, so each scene contributes the
+    median of its factors. Errors below rounding have the factor 1.
     """
     factors: dict[tuple[str, str], dict[str, list[float]]] = {}
     for row, old in pairs:

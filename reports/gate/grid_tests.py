@@ -1,8 +1,6 @@
-"""Tests of every scene of every page with every method against the bounds of theory and the numbers of the baseline.
+"""Tests of every method in every scene of the pages against the bounds of theory and the numbers of the baseline.
 
-The cells are those of the report's grid. `reports.gate.theory` computes the bounds, `reports.gate.change` compares with
-the baseline. The tests are in the package, so that an installed copy can run them in any folder with `pytest -m
-crosscheck` (planar_crosscheck_pytest.py).
+The cells are those of the report. The tests are part of the package, so `pytest -m crosscheck` runs them in any folder.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ GRID = cases(PAGES)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Parametrise the tests by the grid, including the engines that `--engine` names by a reference."""
+    """Parametrise the tests by the cases of the grid. Engines that `--engine` gives by a reference are included."""
     if metafunc.function in (
         test_a_method_is_as_exact_as_theory_promises,
         test_a_method_gives_the_numbers_of_the_baseline,
@@ -31,7 +29,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
-    """The verdict of a case; the test is skipped if the engine is an extra that is not installed."""
+    """The verdict of a case. If the engine's extra is not installed, the test is skipped."""
     if absent := case.engine.missing:
         pytest.skip(absent)
     return verdicts[case]
@@ -41,7 +39,7 @@ def verdict_of(verdicts: dict[Case, CaseVerdict], case: Case) -> CaseVerdict:
 def test_a_method_is_as_exact_as_theory_promises(verdicts: dict[Case, CaseVerdict], case: Case) -> None:
     verdict = verdict_of(verdicts, case)
     if verdict.rows[-1].outcome == Outcome.UNSUPPORTED:
-        # The case is unsupported at every step, for this reason.
+        # The engine does not support the case at any step.
         assert all(row.outcome == Outcome.UNSUPPORTED and row.sentence for row in verdict.rows)
         assert not case.known
         return
@@ -73,5 +71,5 @@ def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.Fix
 
 
 def absence(method: str) -> str:
-    """How to install the extra of a method; empty if the method is installed or needs no extra."""
+    """A sentence on how to install the extra of a method. Empty if the method is installed or needs no extra."""
     return next((sentence for name, sentence in registry.ABSENT.items() if method.startswith(f"{name} ")), "")

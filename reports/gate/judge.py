@@ -1,9 +1,8 @@
 """The judge of the gate: a mechanism with ideal or regularised joints, integrated by textbook methods.
 
-It uses the compiled rows and steps of `engines.lagrange`, or, without numba, those in numpy, which are a hundred times
-slower. Tests compare it with independent solutions: with the exact motion of scenes, to which its errors converge with
-the order of its method (`tests/engines/test_judge.py`), with another implementation of Newton's law with multipliers in
-random mechanisms (`tests/engines/test_judge_witness.py`), and with the sag of a spring for regularised joints.
+The judge uses the compiled rows and steps of `engines.lagrange`. Without numba it uses numpy and is a hundred times
+slower. `tests/engines/test_judge.py` compares it with the exact motions of scenes and with the sag of a spring.
+`tests/engines/test_judge_witness.py` compares it with an independent implementation in random mechanisms.
 """
 
 from __future__ import annotations
@@ -39,8 +38,8 @@ Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
 PARTS = 10  # Number of intervals of `refined` between two samples.
-SAME = 1e-6  # Largest change in `refined` by a third of the step; for a tenth of it N-four-bars' errors change < 10 %.
-MOST_TRIED = 200_000  # Steps after which `refined` returns None: half a minute for 60 rows.
+SAME = 1e-6  # `refined` ends when a third of the step changes the result by less. With 1e-7 errors change by < 10 %.
+MOST_TRIED = 200_000  # Largest number of steps in `refined`, which take half a minute for 60 rows.
 
 TABLEAUS: dict[int, Tableau] = {
     1: Tableau(np.zeros((1, 1)), np.array([1.0]), np.zeros(1)),
@@ -50,9 +49,9 @@ TABLEAUS: dict[int, Tableau] = {
 
 
 def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
-    """The mask (rows,) of the regularised rows; a drive is regularised only if its row has a compliance.
+    """The mask (rows,) of the regularised rows. A drive is regularised only if its row has a compliance.
 
-    Without a compliance a drive prescribes only its rate, and its angle has no spring.
+    A drive without a compliance prescribes only the rate. No spring acts on its angle.
     """
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
@@ -60,9 +59,7 @@ def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
 def dynamics_of(
     mechanism: Mechanism, soft: Regularisation | None = None, least: float = LEAST_INVERSE_INERTIA
 ) -> Dynamics:
-    """The dynamics of a mechanism with ideal or regularised joints; reactions of dependent rows are the minimum-norm
-    ones.
-    """
+    """The dynamics of a mechanism with ideal or regularised joints. Reactions are the minimum-norm solution."""
     gives = None if soft is None else giving_way(mechanism, soft)
     return Dynamics(mechanism, soft, gives, least, RANK_TOLERANCE)
 
@@ -70,7 +67,7 @@ def dynamics_of(
 def integrate(
     scene: Scene, order: int, every: int, soft: Regularisation | None = None, project: bool = False
 ) -> Trajectory:
-    """The scene's motion by a Runge-Kutta method of this order with `every` steps per sample."""
+    """The motion of a scene, computed by a Runge-Kutta method of this order with `every` steps per sample."""
     return stepped(scene.mechanism(), _samples(scene), scene.spacing, order, every, soft, project)
 
 
@@ -83,7 +80,7 @@ def stepped(
     soft: Regularisation | None = None,
     project: bool = False,
 ) -> Trajectory:
-    """A mechanism's motion, by compiled steps if possible, else by `in_numpy`."""
+    """The motion of a mechanism, computed by compiled steps if possible, else by `in_numpy`."""
     compiled = _compiled(mechanism, samples, spacing, order, every, soft, project)
     return compiled or in_numpy(mechanism, samples, spacing, order, every, soft, project)
 
@@ -101,10 +98,9 @@ def _compiled(
     soft: Regularisation | None,
     project: bool,
 ) -> Trajectory | None:
-    """The motion by compiled steps, or None if rows are dependent, the motion is lost, or regularised joints are
-    projected.
+    """The motion by compiled steps. None without numba, for dependent ideal rows, and if the motion diverges.
 
-    Regularised rows may be dependent, since their compliances make the system regular.
+    Regularised rows may be dependent, since their compliances make the system regular. They are not projected here.
     """
     machine = _machine(mechanism, soft)
     if machine is None or (project if soft is not None else machine.has_dependent_rows):
@@ -120,7 +116,7 @@ def _compiled(
 
 
 def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel | None:
-    """The compiled mechanism, regularised if `soft` is given, or None without numba."""
+    """The compiled mechanism with the regularisation `soft`, or None without numba."""
     machine = CompiledModel.of(mechanism) if installed() else None
     if machine is not None and soft is not None:
         machine.regularise(soft, giving_way(mechanism, soft))
@@ -128,11 +124,11 @@ def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel
 
 
 def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisation) -> Trajectory | None:
-    """A regularised motion by the method of order 4 with step control, at samples `spacing` [s] apart.
+    """A regularised motion at samples `spacing` [s] apart, computed by the method of order 4 with step control.
 
-    Each of the PARTS intervals between two samples is repeated with a third of the step until the result changes by
-    less than SAME, relative to the mechanism's length and speed. So the integration passes singular positions, where
-    spring forces are large. None without numba, or after MOST_TRIED steps.
+    The time between two samples is divided into PARTS intervals. An interval is repeated with a third of the step until
+    the result changes by less than SAME, relative to the mechanism's length and speed. So the integration passes
+    singular positions, where spring forces are large. Returns None without numba, and after MOST_TRIED steps.
     """
     machine = _machine(mechanism, soft)
     if machine is None:
@@ -174,9 +170,9 @@ def in_numpy(
     project: bool = False,
     least: float = LEAST_INVERSE_INERTIA,
 ) -> Trajectory:
-    """A mechanism's motion from its start, samples `spacing` [s] apart, by steps in numpy alone.
+    """The motion of a mechanism at samples `spacing` [s] apart, computed in numpy.
 
-    Order 1, which has no compiled steps, is the semi-implicit Euler method: poses change with the new velocities.
+    The method of order 1 is semi-implicit Euler, which moves poses by the new velocities. It is not compiled.
     """
     dt, dynamics = spacing / every, dynamics_of(mechanism, soft, least)
     step = semi_implicit_euler(dynamics) if order == 1 else runge_kutta(dynamics, TABLEAUS[order])
@@ -198,19 +194,19 @@ def in_numpy(
 
 @lru_cache(maxsize=1)
 def _truth(scene: Scene, instants: bytes) -> Trajectory:
-    """The scene's motion at instants [s], as bytes; cached, since a prediction compares a dozen runs with it."""
+    """The scene's motion at instants [s] given as bytes. It is cached, since a prediction needs it a dozen times."""
     return freeze(scene.motion(np.frombuffer(instants)))
 
 
 def errors(
     scene: Scene, order: int, every: int, soft: Regularisation | None = None, project: bool = False
 ) -> Mapping[str, float]:
-    """Largest errors of the judge's run by quantity; infinite if the run failed."""
+    """Quantity -> largest error of the judge's run. Errors are infinite if the run failed."""
     return _largest_errors(scene, lambda: integrate(scene, order, every, soft, project))
 
 
 def errors_as_soft(scene: Scene, soft: Regularisation) -> Mapping[str, float]:
-    """Largest errors of `refined` with a method's regularisation, by quantity; infinite if `refined` returns None."""
+    """Quantity -> largest error of `refined` with this regularisation. Errors are infinite if it returns None."""
     return _largest_errors(scene, lambda: refined(scene.mechanism(), _samples(scene), scene.spacing, soft))
 
 

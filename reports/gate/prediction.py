@@ -1,8 +1,8 @@
 """Predicted discretisation and regularisation errors of a scene, computed by the reference solver of the gate.
 
-A discretisation error A (h / tau)^p has two unknowns, the amplitude A and the time scale tau. Runs of order 2 and of
-order 4 determine both, and so the error of any order at any step in this scene. The error of regularised joints is
-proportional to their compliance, so one run predicts all compliances.
+A discretisation error A (h / tau)^p has two unknowns, the amplitude A and the time scale tau. A run of order 2 and a
+run of order 4 determine both. They predict the error of any order p at any step h in this scene. The error of
+regularised joints is proportional to their compliance, so one run predicts the error for all compliances.
 """
 
 from __future__ import annotations
@@ -26,32 +26,36 @@ from reports.model.page import Page
 from reports.model.quantities import QUANTITY
 from reports.model.tasks import Answer, Task, Values
 
-# A kind of regularisation: a mask of the regularised rows, and whether the velocity term of their acceleration is
-# complete. The judge makes one run for each kind.
+# The kind of a regularisation consists of a mask of the regularised rows, and of a flag whether the velocity term of
+# their acceleration is complete. The judge makes one run for each kind.
 SoftKind = tuple[tuple[bool, ...], bool]
 
-# Regularisation of the judge's runs: MuJoCo's default with a smaller compliance. Errors are proportional to the
-# compliance and to 1 / stiffness [s^2], or to 1 / damping [s] for rows without a gap.
+# The judge's runs have MuJoCo's default regularisation with a smaller compliance. Errors are proportional to the
+# compliance and to 1 / stiffness [s^2]. For rows without a gap they are proportional to 1 / damping [s].
 STIFFNESS, DAMPING, COMPLIANCE = 1 / 0.02**2, 2 / 0.02, 0.01
 
 REFINEMENTS = (
     1,
     3,
-)  # Steps per sample of the judge: the first one with an error of order 2 within REACH is used.
+)  # Steps per sample of the judge. The first number is used with which the error of order 2 is within REACH.
 REACH = 0.1  # rad.
-MOST_STEPS = 20_000  # Steps of a run of the judge; in longer scenes only the coarser steps of each method give a bound.
-DIFFERENCES = 1000  # Intervals of the true motion for its finite differences.
+MOST_STEPS = 20_000  # Largest number of steps of the judge. In longer scenes the method's coarser steps give the bound.
+DIFFERENCES = 1000  # Number of intervals for finite differences of the true motion.
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """Errors of a scene by quantity, which are scaled to any convergence order and regularisation.
+    """Errors of a scene by quantity. They are scaled to any convergence order and regularisation.
 
-    second, fourth: errors of the methods of order 2 and 4 at `step` [s]. length: the mechanism's length [m]. speed,
-    acceleration: largest values of the reference motion [m/s, m/s^2]. changing: first and second derivative of the
-    reactions divided by their largest value [1/s, 1/s^2]. soft: errors with STIFFNESS, DAMPING and COMPLIANCE.
-    holonomic: mask of the rows that constrain positions. prescribed: whether the drives determine the motion. lag: for
-    a prescribed motion, the errors of velocities and reactions at an earlier time, per second of delay.
+    second: errors of the method of order 2 at `step` [s].
+    fourth: errors of the method of order 4 at `step` [s].
+    length: length of the mechanism [m].
+    speed, acceleration: largest values of the reference motion [m/s, m/s^2].
+    changing: first and second derivative of the reactions, divided by the largest reaction [1/s, 1/s^2].
+    soft: errors with STIFFNESS, DAMPING and COMPLIANCE.
+    holonomic: mask of the rows that constrain positions.
+    prescribed: whether the drives determine the motion.
+    lag: errors of delayed velocities and reactions in a prescribed motion, divided by the delay [s].
     """
 
     step: float
@@ -67,14 +71,14 @@ class Prediction:
     lag: Mapping[str, float] = field(default_factory=dict)
 
     def is_defined(self, quantity: str) -> bool:
-        """Whether the quantity exists in the scene: a gap needs a joint that constrains positions."""
+        """Whether the quantity exists in the scene. For example, a gap needs a joint that constrains positions."""
         return not math.isnan(self.second[quantity]) and (quantity != "gap" or any(self.holonomic))
 
     def error(self, quantity: str, order: float, step: float) -> float:
-        """A (step / tau)^order; infinite if the runs of order 2 and 4 failed, NaN if the quantity does not exist.
+        """The predicted error A (step / tau)^order. Infinite if the judge's runs failed, NaN if it is not defined.
 
-        An error of the pose causes an error of the velocity, at the rate speed / length of the motion. An error of the
-        velocity may be a slip (`Quantity.follows`).
+        An error of the pose causes an error of the velocity, which is the pose error times speed / length. An error of
+        the velocity may be a slip (`Quantity.follows`).
         """
         error = self._power(quantity, order, step)
         cause = QUANTITY[quantity].follows
@@ -97,11 +101,11 @@ class Prediction:
         return second * ratio ** ((order - 2) / 2) * (step / self.step) ** order
 
     def softness_error(self, quantity: str, softness: Regularisation | None) -> float:
-        """The error caused by this regularisation."""
+        """The error that this regularisation causes."""
         return scaled_softness_error(self.soft, quantity, softness, self.holonomic)
 
     def gap_closing_error(self, quantity: str, gap: float, softness: Regularisation | None) -> float:
-        """The error while a spring closes a discretisation gap [m] with the velocity gap * damping."""
+        """The error while a spring closes a gap [m] from discretisation. The velocity is gap * damping."""
         if softness is None or not softness.complete or math.isnan(gap):
             return 0.0
         if quantity == "reaction":
@@ -109,10 +113,10 @@ class Prediction:
         return self._error_of_slip(quantity, gap * softness.damping)
 
     def spring_transient_error(self, quantity: str, softness: Regularisation | None) -> float:
-        """The error during the transient of a method's springs at the start.
+        """The error during the initial transient of a method's springs.
 
-        A critically damped spring with the final gap g [m] and stiffness k [1/s^2] opens with at most the speed g
-        sqrt(k) / e.
+        If a critically damped spring with stiffness k [1/s^2] opens to the gap g [m], its largest speed is
+        g sqrt(k) / e.
         """
         if softness is None or softness.compliance == 0:
             return 0.0
@@ -121,17 +125,17 @@ class Prediction:
         )
 
     def _error_of_slip(self, quantity: str, speed: float) -> float:
-        """The error of a velocity or energy that a slip of this speed [m/s] causes; 0 for other quantities."""
+        """The error of a velocity or energy due to a slip of this speed [m/s]. Zero for other quantities."""
         if quantity == "energy":
             return 2 * speed / self.speed
         return {"m/s": speed, "rad/s": speed / self.length}.get(QUANTITY[quantity].unit, 0.0)
 
     def differencing_error(self, order: float, step: float) -> float:
-        """The relative error of a reaction that is the change of velocity over a step [s], at most of order 2."""
+        """The relative error of a reaction computed from the change of velocity over a step [s]."""
         return self.changing[order > 1] * step ** min(order, 2)
 
     def largest_comparable(self, quantity: str) -> float:
-        """The error above which a run is not comparable; the largest value for velocities, energy and reactions."""
+        """The largest error of a comparable run, in the unit of the quantity."""
         scales = {"rad": 1.0, "m": self.length, "rad/s": self.speed / self.length, "m/s": self.speed}
         facts = QUANTITY[quantity]
         return facts.largest * scales.get(facts.unit, 1.0)
@@ -143,9 +147,10 @@ def scaled_softness_error(
     softness: Regularisation | None,
     holonomic: Sequence[bool],
 ) -> float:
-    """The error that a regularisation causes, scaled from the judge's errors by kind (`Prediction.soft`).
+    """The error that a regularisation causes, scaled from the judge's errors `soft`.
 
-    A holonomic row (`holonomic`, (rows,)) yields by its spring, another one by its damper.
+    holonomic: mask of the rows that constrain positions. Their gap depends on the stiffness. The slip of other rows
+    depends on the damping.
     """
     if softness is None:
         return 0.0
@@ -156,7 +161,7 @@ def scaled_softness_error(
             stiff if spring else damped for soft_row, spring in zip(softness.rows, holonomic, strict=True) if soft_row
         }
         error += soft[softness.rows, True][quantity] * softness.compliance / COMPLIANCE * max(yielding, default=0.0)
-        # A regularised row transmits the share 1 - compliance of a force, whatever its stiffness.
+        # A regularised row of any stiffness transmits the share 1 - compliance of a force.
         error += softness.compliance if quantity == "reaction" else 0.0
     if not softness.complete:
         lag = stiff if quantity == "gap" else max(damped, stiff)
@@ -165,7 +170,7 @@ def scaled_softness_error(
 
 
 def _larger_finite(first: Mapping[str, float], second: Mapping[str, float]) -> Mapping[str, float]:
-    """By quantity the larger finite error of two; infinite if neither is finite, NaN if both are NaN."""
+    """Quantity -> the larger finite error. Infinite if neither error is finite, NaN if both errors are NaN."""
     out = {}
     for name in QUANTITY_NAMES:
         known = [value for value in (first[name], second[name]) if not math.isnan(value)]
@@ -187,10 +192,10 @@ def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[SoftKind]:
 
 @cache
 def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Prediction:
-    """The scene's prediction, cached in this process: about two seconds, more for a hundred bodies.
+    """The prediction for a scene. It takes about two seconds and is cached in this process.
 
-    The judge runs with and without projection, and the larger error counts: in a prescribed motion a projection removes
-    the whole error, and without one the constraints drift at singular positions.
+    The judge runs with and without projection, and the larger error counts. In a prescribed motion projection removes
+    the whole error. Without projection the constraints drift at singular positions.
     """
     second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
     every = REFINEMENTS[0]
@@ -199,7 +204,7 @@ def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Predict
         if second["angle"] <= REACH:
             break
     if not max(second["angle"], fourth["angle"]) <= SATURATED:
-        # The judge has lost the motion: no other order can be predicted.
+        # The judge's run has diverged, so no other order can be predicted.
         second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
     mechanism = scene.mechanism()
     prescribed = is_prescribed(mechanism)
@@ -221,7 +226,7 @@ def _sampled(scene: Scene) -> Trajectory:
 
 
 def _lag_errors(scene: Scene) -> Mapping[str, float]:
-    """Errors of reference velocities and reactions that are one interval late, by quantity, per second of delay."""
+    """Quantity -> error of the reference motion with a delay of one interval, divided by the delay [s]."""
     mechanism, truth = scene.mechanism(), _sampled(scene)
     names = ("t", "pose", "twist", "reaction")
     now, before = (
@@ -247,12 +252,12 @@ def _motion_scales(scene: Scene) -> tuple[float, float, tuple[float, float]]:
 
 
 def unit_softness_errors(scene: Scene, rows: tuple[bool, ...], complete: bool) -> Mapping[str, float]:
-    """Errors by quantity with the regularisation STIFFNESS, DAMPING, COMPLIANCE of these rows (rows,)."""
+    """Quantity -> error if the rows in the mask are regularised by STIFFNESS, DAMPING and COMPLIANCE."""
     every = max(1, math.ceil(scene.spacing * DAMPING / 2))
     scaled: Mapping[str, float] = dict.fromkeys(QUANTITY_NAMES, math.inf)
     if scene.samples * every > MOST_STEPS:
         return scaled
-    for divisor in (1.0, 1e3, 1e6):  # the next one if the motion is lost
+    for divisor in (1.0, 1e3, 1e6):  # If the motion diverges, the next divisor is used.
         soft = Regularisation(STIFFNESS, DAMPING, COMPLIANCE / divisor, rows, complete)
         scaled = {name: value * divisor for name, value in errors(scene, 4, every, soft).items()}
         if not complete or scaled["angle"] / divisor <= SATURATED:
@@ -261,22 +266,22 @@ def unit_softness_errors(scene: Scene, rows: tuple[bool, ...], complete: bool) -
 
 
 def _order_errors(scene: Scene, order: int, every: int) -> Mapping[str, float]:
-    """The larger errors of the runs with and without projection.
+    """Quantity -> the larger error of the runs with and without projection.
 
-    If only one run has an angle error of at most SATURATED, only this run is used.
+    A run with an angle error above SATURATED is ignored unless both runs have such an error.
     """
     runs = [errors(scene, order, every, project=project) for project in (False, True)]
     followed = [run for run in runs if run["angle"] <= SATURATED] or runs
     return _larger_finite(followed[0], followed[-1])
 
 
-MOST_BODIES = 20  # Bodies, at most, of a scene for which pages use the judge: with more bodies a run takes minutes.
-STAGE = 1e-3  # s, approximate time of one Runge-Kutta stage of the judge for a few bodies.
+MOST_BODIES = 20  # Pages do not use the judge for scenes with more bodies, since a run would take minutes.
+STAGE = 1e-3  # Approximate time of one Runge-Kutta stage of the judge for a few bodies [s].
 
 
 @dataclass(frozen=True)
 class Softened(Task):
-    """Largest errors by quantity with the regularisation of the judge; see `unit_softness_errors`."""
+    """The task that computes `unit_softness_errors`."""
 
     scene: Scene
     rows: tuple[bool, ...]
@@ -299,14 +304,14 @@ class Softened(Task):
 
 
 def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...]:
-    """The judge's runs for the regularisations that these engines declare; none for more than MOST_BODIES bodies."""
+    """The judge's runs for the regularisations that these engines declare. Empty for more than MOST_BODIES bodies."""
     if len(mechanism_of(scene).bodies) > MOST_BODIES:
         return ()
     return tuple(Softened(scene, *kind) for kind in sorted(kinds(scene, engines)))
 
 
 def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine, quantity: str, step: float) -> float:
-    """The error caused by the engine's declared regularisation at this step [s]; 0 without one, NaN if unknown."""
+    """The error that the engine's declared regularisation causes at this step [s], or NaN if it is unknown."""
     mechanism = mechanism_of(scene)
     softness = engine.regularisation(mechanism, step)
     soft: dict[SoftKind, dict[str, float]] = {}
@@ -317,14 +322,12 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
             soft[rows, complete] = {name: answer.number(name) for name in QUANTITY_NAMES}
     try:
         return scaled_softness_error(soft, quantity, softness, mechanism.holonomic.tolist())
-    except KeyError:  # the task was not run, or failed
+    except KeyError:  # The task was not run, or it failed.
         return math.nan
 
 
 def all_tasks(page: Page) -> tuple[Task, ...]:
-    """The tasks of a page without repetition: its own, those of its experiments, and the judge's runs for its
-    engines.
-    """
+    """The distinct tasks of a page: for its text, for its experiments, and the judge's runs for its engines."""
     experiments = [task for failure in page.failures for task in failure.tasks]
     declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
     return tuple(dict.fromkeys([*page.tasks, *experiments, *declared]))

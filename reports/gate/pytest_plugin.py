@@ -1,7 +1,6 @@
-"""The grid in pytest: `pytest -m crosscheck --scene --engine --baseline --cost --crosscheck-report`, and its table.
+"""The pytest plugin with the options of `pytest -m crosscheck` and the table of verdicts.
 
-The tests are in `reports.gate.grid_tests`. Where our wheel is installed, `pytest -m crosscheck` brings both in any
-folder (planar_crosscheck_pytest.py). Only the cells of selected tests are run.
+The tests are in `reports.gate.grid_tests`. Only the cells of selected tests are run.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ HEADER = ("scene", "method", "step [s]", "error", "bound", "nearest check", "how
 
 
 def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
-    """One line per case under HEADER: the angle's error and bound, and the check closest to its bound."""
+    """Rows of a table with the columns HEADER. Every case has a row."""
     out = []
     for verdict in verdicts:
         finest, worst = verdict.rows[-1], verdict.worst
@@ -46,7 +45,7 @@ def lines(verdicts: Iterable[CaseVerdict]) -> list[list[str]]:
 
 
 def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
-    """Sentences on the baseline: other versions and the changes with them, large CPU times, and missing cells."""
+    """Sentences on other versions, changes, large CPU times and missing cells relative to the baseline."""
     verdicts = tuple(verdicts)
     out = [sentence] if (sentence := mixed(baseline)) else []
     out += [f"The baseline has no column {name!r}: this quantity is not compared." for name in baseline.unmeasured]
@@ -71,7 +70,7 @@ def changes(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> list[str]:
 
 
 def vacuous_checks(verdicts: Iterable[CaseVerdict]) -> list[str]:
-    """Sentences with the number of theory checks that cannot fail, and the number for each reason."""
+    """Sentences with the number of theory checks that cannot fail, in total and by reason."""
     checks = [check for verdict in verdicts for check in verdict.theory]
     vacuous = count_vacuous(checks)
     out = [f"{len(checks)} checks of theory; {vacuous.total()} of them can't fail."]
@@ -79,7 +78,7 @@ def vacuous_checks(verdicts: Iterable[CaseVerdict]) -> list[str]:
 
 
 def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
-    """The report as Markdown: a summary, failures with their sentences, known deviations, and the table."""
+    """The report as Markdown with a summary, failures, known deviations, and the table."""
     verdicts = tuple(verdicts)
     failed = [v for v in verdicts if v.theory_complaints or v.change_complaints]
     deviating = [v for v in verdicts if v.case.known and v not in failed]
@@ -130,7 +129,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Read the baseline and check the options before any run. Raises UsageError with one line."""
+    """Read the baseline and check the options before any run. Raises UsageError."""
     if sentence := registry.mislabelled():
         raise pytest.UsageError(sentence)
     try:
@@ -148,7 +147,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]:
-    """The engines given by references, and the selected names and methods. Raises UsageError."""
+    """(engines given by references, selected names of engines and methods). Raises UsageError."""
     loaded: dict[Engine, None] = {}
     wanted: list[str] = []
     by_method = {method_name(engine): engine for engine in registry.ENGINES}
@@ -187,7 +186,7 @@ def case_of(item: pytest.Item) -> Case | None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out the cases of other scenes and engines. Raises UsageError when none is left."""
+    """Select the cases of --scene and --engine. Raises UsageError if no case is selected."""
     scenes, engines = config.option.scene, config.stash[WANTED]
     if not (scenes or engines):
         return
@@ -202,7 +201,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) -> bool:
-    """Whether a test is selected by --scene and --engine; so are tests without a case that check all verdicts."""
+    """Whether a test is selected by --scene and --engine. So are tests that check all verdicts."""
     case = case_of(item)
     if case is None:
         return "verdicts" in getattr(item, "fixturenames", ())
@@ -213,9 +212,9 @@ def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) ->
 
 @pytest.fixture(scope="session")
 def verdicts(request: pytest.FixtureRequest) -> dict[Case, CaseVerdict]:
-    """The verdicts on the selected cases; only their cells are run.
+    """The verdicts on the selected cases. Only the cells of these cases are run.
 
-    The pool uses all processors. With `pytest -n` every worker would run the grid, so the tests are skipped.
+    The runs use all processors. With `pytest -n` every worker would run the grid, so the tests are skipped.
     """
     if hasattr(request.config, "workerinput"):
         pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")

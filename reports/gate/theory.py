@@ -1,6 +1,6 @@
 """The gate of theory: measured errors against bounds from convergence order, regularisation and rounding.
 
-A `Case` is one scene in one method with its declared order; the grid is all cases.
+A `Case` is one scene in one method with its declared order. The grid consists of all cases.
 """
 
 from __future__ import annotations
@@ -23,11 +23,12 @@ from reports.model.outcomes import SATURATED, Outcome
 from reports.model.page import Page
 from reports.model.quantities import QUANTITY
 
-# Allowed difference of the observed order below the declared order. At an error of 0.1 rad the next power of the step
-# has a tenth of the leading term, and half a decade lower a thirtieth. This changes the observed order by up to 0.1. A
-# last point slightly above rounding changes the order by a similar amount.
+# The observed order may be lower than the declared order by this difference. At an error of 0.1 rad the next power of
+# the step is a tenth of the leading term. At a step half a decade smaller it is a thirtieth. This changes the observed
+# order by up to 0.1. A last point slightly above rounding changes the order by a similar amount.
 BELOW = 0.4
-# Allowed difference of the observed order above the declared order, below 1 so that a declaration one too low fails.
+# The observed order may be higher than the declared order by this difference. It is below 1, so that a declared order
+# that is too low by 1 fails.
 ABOVE = 0.95
 # Angle errors [rad] above this value are not proportional to their cause, so they are left out of the fit of an order.
 PROPORTIONAL = 0.1
@@ -35,10 +36,11 @@ TOO_FEW = "fewer than three steps have an error above rounding and below a tenth
 
 
 def order(promise: ConvergenceOrder | NotDeclared, rows: Sequence[Measurement]) -> tuple[Check, ...]:
-    """The check of the observed convergence order; none without a declared order.
+    """The check of the observed convergence order. Empty without a declared order.
 
-    measured: the difference to the declared order over the allowed difference. An error that levels off, grows or is
-    erratic has the order 0. With fewer than three usable points the check has an infinite bound and gives the reason.
+    The measured value is the difference to the declared order divided by the allowed difference. An error that levels
+    off, grows or is erratic has the order 0. With fewer than three usable points the bound is infinite, and the
+    sentence of the check gives the reason.
     """
     if isinstance(promise, NotDeclared) or promise.order == EXACT:
         return ()
@@ -56,25 +58,25 @@ def order(promise: ConvergenceOrder | NotDeclared, rows: Sequence[Measurement]) 
     return (Check("order", "angle", measured, 1.0, sentence=f", {fitted.verdict}{value}"),)
 
 
-# Factor on the judge's error of the same order. Methods of one order differ in their constants: a spring that closes a
-# gap in five steps has 5^2 / 2 at second order. The correct methods of the grid lie within a factor of 10 of the judge,
-# most within a factor of 2. The errors at coarser steps of the same method give a second, narrower bound.
+# Safety factor on the judge's error of the same order. Methods of one order have different error constants. For
+# example, the constant of a spring that closes a gap in five steps is 5^2 / 2 at order 2. The errors of correct methods
+# in the grid are at most 10 times the judge's error, and mostly at most twice.
 ROOM = 20.0
-# Factor on the error that a method's coarser steps predict: for the next power of the step, and since the largest error
-# over the samples may be at another sample. Smaller than 10^0.5, so that an error that does not fall between the two
-# finest steps fails even at first order.
+# Safety factor on the error that is predicted from a method's coarser steps. It allows for the next power of the step,
+# and for a largest error at another sample. It is below 10^0.5, so that an error that is equal at the two finest steps
+# fails even at first order.
 ROOM_OWN = 2.5
-# Replaces ROOM_OWN in a prescribed motion, in which errors do not propagate and the largest error is at the same time
-# for every step. Only the next power of the step counts: in the driven four-bar it is 6 % at the coarsest step,
-# computed from the judge's two orders.
+# This factor replaces ROOM_OWN in a prescribed motion. There errors do not propagate, and the largest error is at the
+# same time for every step. The factor allows for the next power of the step, which contributes 6 % in the driven
+# four-bar at the coarsest step.
 ROOM_PRESCRIBED = 1.25
-# Number of coarser steps that are needed to predict an error, since at a single step two errors may cancel.
+# Number of coarser steps that are needed to predict an error. At a single step two errors may cancel.
 ENOUGH = 2
-# Without a declared order: factor on the difference between the errors at the method's steps. If the step changes the
-# error by less than a twentieth, the model is a different one.
+# Without a declared order an error may be this many times the difference between the errors at the method's steps. If
+# the step has a smaller effect, the model is a different one.
 ROOM_UNPROMISED = 20.0
-# Errors without a declared order pass if they are below this fraction of the largest comparable error, since two errors
-# may be equal by chance.
+# An error without a declared order passes if it is below this fraction of the largest comparable error. This allows for
+# errors at two steps that are equal by chance.
 SMALL = 1e-3
 
 
@@ -86,15 +88,15 @@ def terms(
     step: float,
     as_soft: Mapping[str, float] | None = None,
 ) -> tuple[float, float, float]:
-    """The errors of discretisation, regularisation and rounding, without safety factors; `as_soft`: see `theory`."""
+    """The errors of discretisation, regularisation and rounding without safety factors. as_soft: see `theory`."""
     velocity = QUANTITY["velocity"].rounding
     rounding = velocity if quantity == "slip" else QUANTITY[quantity].rounding
     if quantity in ("rate", "velocity"):
-        # Rounding of the pose changes velocities at the rate of the motion; see `Prediction.error`.
+        # Rounding of the pose changes velocities, see `Prediction.error`.
         rounding = max(rounding, prediction.speed / prediction.length * QUANTITY["angle"].rounding)
     if quantity not in ("gap", "reaction"):
         rounding *= promise.amplified  # The weights of an extrapolation amplify rounding.
-    if quantity == "reaction" and promise.differences:  # A change of velocity over the step.
+    if quantity == "reaction" and promise.differences:  # The reaction is a change of velocity over the step.
         rounding += velocity * promise.amplified * promise.differences / step / prediction.acceleration
     if promise.of(quantity) == EXACT:
         return 0.0, 0.0, rounding
@@ -116,14 +118,13 @@ def theory(
     coarser: Sequence[Measurement] = (),
     as_soft: Mapping[str, float] | None = None,
 ) -> tuple[Check, ...]:
-    """The checks of one row: its outcome, and one for each quantity.
+    """The checks of the outcome and of each quantity of a row.
 
-    coarser: rows of the same method at larger steps. Their errors, scaled by the declared order, give a second bound if
-    there are ENOUGH, or if the judge has lost the motion. Without a declared order the bound follows from the
-    differences between the errors at the method's steps.
-    as_soft: the judge's errors with exactly this regularisation, if its errors are not proportional to the compliance.
-    NaN fails unless the engine declares it. A check that does not apply has an infinite bound and gives the reason; see
-    `count_vacuous`.
+    coarser: rows of the same method at larger steps. Their errors, scaled by the declared order, give a second bound.
+    It needs ENOUGH rows, or one row if the judge's run has diverged. Without a declared order the bound follows from
+    the differences between the errors at the method's steps.
+    as_soft: the judge's errors with this regularisation. It is needed if errors are not proportional to the compliance.
+    NaN fails unless the engine declares it. A check that does not apply has an infinite bound and gives the reason.
     """
     outcome = Outcome(row.outcome)
     if outcome is Outcome.UNSUPPORTED:
@@ -180,7 +181,7 @@ def _promised(
         known = [getattr(other, quantity) * (row.step / other.step) ** order for other in nearest]
         room = ROOM_PRESCRIBED if rigid else ROOM_OWN
         own = room * max((value for value in known if not math.isnan(value)), default=math.inf)
-        # If the judge's regularised run lost the motion, the method's coarser steps alone give the bound.
+        # If the judge's regularised run has diverged, only the method's coarser steps give the bound.
         cost, soft = (min(cost, own), soft) if math.isfinite(soft) else (own, 0.0)
     if rigid and order == 1 and promise.order > 1 and (lag := QUANTITY[quantity].lag):
         cost = min(cost, ROOM_PRESCRIBED * lag * row.step * prediction.lag[quantity])
@@ -198,20 +199,20 @@ def _without_promise(quantity: str, prediction: Prediction, rows: Sequence[Measu
 
 
 def count_vacuous(checks: Iterable[Check]) -> Counter[str]:
-    """The number of checks that cannot fail (infinite bound) by the reason."""
+    """Reason -> number of checks that cannot fail, since their bound is infinite."""
     return Counter(check.sentence.removeprefix(", ") or "no bound" for check in checks if math.isinf(check.bound))
 
 
-# Steps per sample: the steps of the quick report and a finer one, since the order of a fast motion is observed only for
-# steps below its time scale.
+# Steps per sample. The last number is finer than those of the quick report, since the order of a fast motion is
+# observed only for steps below its time scale.
 STEPS = (*QUICK, 3 * QUICK[-1])
 FINER = (*FULL, 1000)
-COST_LIMIT = 0.5  # estimated CPU time [s] of one run above which a cell is left out
+COST_LIMIT = 0.5  # A cell is left out if its estimated CPU time [s] is longer.
 
 
 @dataclass(frozen=True)
 class Case:
-    """One scene in one method, its declared order, and the checks (by name) with a known deviation."""
+    """A scene in a method, with the declared order and the known deviations by the name of the check."""
 
     scene: Scene
     engine: Engine
@@ -228,7 +229,7 @@ class Case:
 
     @property
     def ours(self) -> bool:
-        """Whether scene and engine belong to this suite; only their rows are published."""
+        """Whether scene and engine belong to this suite. Only such rows are published."""
         return {type(each).__module__.partition(".")[0] for each in (self.scene, self.engine)} <= {
             "reference",
             "engines",
@@ -241,8 +242,8 @@ class Case:
     def cells(self) -> tuple[Cell, ...]:
         """The cells of the case, coarse steps first.
 
-        In a prescribed motion a wrong mass changes the reactions alone. Reactions of first order are wrong by their
-        change in a step, so they need finer steps.
+        In a prescribed motion a wrong mass changes only the reactions. Reactions of first order need finer steps, since
+        their error is their change in a step.
         """
         mechanism = mechanism_of(self.scene)
         alone = (
@@ -254,7 +255,7 @@ class Case:
 
 
 def cases(pages: Iterable[Page]) -> tuple[Case, ...]:
-    """The grid; an order is declared by the page for a scene and method, or else by the engine."""
+    """The cases of the grid. The page of a scene may declare an order, else the engine's declared order is used."""
     return tuple(
         _case(page, scene, engine) for page in pages for scene in page.scenes for engine in page.engines_of(scene)
     )
@@ -268,7 +269,7 @@ def _case(page: Page, scene: Scene, engine: Engine) -> Case:
 
 
 def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:
-    """Scene -> the kinds of regularisation that the judge has to run for these cases."""
+    """Scene -> the kinds of regularisation that the judge runs for these cases."""
     by_scene: dict[Scene, list[Engine]] = {}
     for case in chosen:
         by_scene.setdefault(case.scene, []).append(case.engine)
@@ -276,7 +277,7 @@ def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:
 
 
 def own_softness(case: Case, rows: Sequence[Measurement], judge: Prediction) -> Regularisation | None:
-    """The regularisation of a case if the judge has to run with exactly this one, else None.
+    """The regularisation of a case if the judge needs a run with exactly these values, else None.
 
     In motions through singular positions errors are not proportional to the compliance.
     """
@@ -291,9 +292,10 @@ def checks(
     judge: Prediction | None = None,
     as_soft: Mapping[str, float] | None = None,
 ) -> tuple[Check, ...]:
-    """The checks of theory at the finest step and of the order over all rows (coarse to fine); none if unsupported.
+    """The checks of theory at the finest step, and of the order over all rows. Empty if the case is unsupported.
 
-    judge: the scene's prediction. as_soft: the judge's errors with `own_softness`. Both are computed here if None.
+    rows: from coarse to fine steps. judge: the prediction for the scene, computed here if None. as_soft: the judge's
+    errors with `own_softness`, computed here if None.
     """
     if judge is None:
         judge = prediction(case.scene, kinds(case.scene, [case.engine]))

@@ -1,4 +1,4 @@
-"""Run the judge and the cells of the selected cases in worker processes, and check their rows."""
+"""Functions that run the judge and the cells of selected cases in worker processes, and check the rows."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ from reports.model.outcomes import Loss
 from reports.run.running import run_cells, worker_count
 from reports.run.supervisor import supervise
 
-JUDGE_LIMIT = 600.0  # CPU seconds of one run of the judge; the largest scenes need several minutes
+JUDGE_LIMIT = 600.0  # CPU seconds of one run of the judge. The largest scenes need several minutes.
 
 
 @dataclass(frozen=True)
 class CaseVerdict:
-    """The rows of a case, their checks of theory and of change, and for each row that of the baseline or None."""
+    """The rows of a case, the checks of theory and of change, and for each row the baseline's row or None."""
 
     case: Case
     rows: tuple[Measurement, ...]
@@ -48,7 +48,7 @@ class CaseVerdict:
 
     @property
     def pairs(self) -> tuple[tuple[Measurement, Old], ...]:
-        """The rows for which the baseline has a row, each with the baseline's row."""
+        """(row, the baseline's row) for each row that the baseline has."""
         return tuple((row, old) for row, old in zip(self.rows, self.before, strict=False) if old is not None)
 
     @property
@@ -57,12 +57,12 @@ class CaseVerdict:
 
     @property
     def cost(self) -> float:
-        """The CPU time over that of the baseline, or NaN if not known."""
+        """The CPU time divided by that of the baseline, or NaN if unknown."""
         return cost(self.pairs)
 
     @property
     def theory_complaints(self) -> tuple[str, ...]:
-        """Sentences about failed checks and known deviations that changed."""
+        """Sentences about failed checks, and about known deviations that have changed."""
         return complaints(self.theory, dict(self.case.known), self.rows[-1].outcome)
 
     @property
@@ -71,13 +71,13 @@ class CaseVerdict:
 
     @property
     def worst(self) -> Check | None:
-        """The check of theory with the largest share of its bound, or None if the engine cannot build the scene."""
+        """The check of theory with the largest ratio of value to bound. None if the engine cannot build the scene."""
         return nearest(self.theory) if self.theory else None
 
 
 @dataclass(frozen=True)
 class JudgeRun:
-    """A run of the judge: the prediction for kinds of regularisation, or the errors with a method's regularisation."""
+    """A job of the judge. It computes a prediction, or errors with the regularisation of a method."""
 
     scene: Scene
     soft: frozenset[SoftKind] | Regularisation
@@ -89,7 +89,7 @@ class JudgeRun:
 
 
 def call(job: JudgeRun) -> Any:
-    """Run a job; a module function, so that workers can import it."""
+    """Run a job. Workers import this function."""
     return job()
 
 
@@ -107,10 +107,10 @@ def run_judge(jobs: Iterable[JudgeRun], workers: int) -> dict[JudgeRun, Any]:
 def run_and_check(
     chosen: Iterable[Case], baseline: Baseline, workers: int | None = None, dearest: float | None = None
 ) -> dict[Case, CaseVerdict]:
-    """Run the judge and the cells of these cases in worker processes (one per processor if None), and check the rows.
+    """Run the judge and the cells of these cases in worker processes, and check the rows.
 
-    dearest: the largest ratio of the CPU time to the baseline's; if given, runs are timed as in a report. Raises
-    RuntimeError if the judge fails.
+    workers: number of processes, by default one per processor. dearest: limit of the CPU time divided by the
+    baseline's. With this limit runs are timed as in a report. Raises RuntimeError if the judge fails.
     """
     chosen, workers = tuple(chosen), workers or worker_count()
     jobs = {scene: JudgeRun(scene, soft) for scene, soft in predictions(chosen).items()}
@@ -153,9 +153,8 @@ def run_and_check(
 def vanished(case: Case, before: Sequence[Old | None]) -> tuple[Check, ...]:
     """A check that fails if the baseline lacks rows of a case.
 
-    before: the case's rows in the baseline, from coarse to fine steps. A baseline of a coarser grid may end at a
-    coarser step, and a third party's scene or engine may be missing. Intermediate steps, and a scene and method of this
-    suite, may not be missing.
+    before: the case's rows in the baseline, from coarse to fine steps. The finest steps may be missing, and also all
+    rows of a third party's scene or engine. Intermediate steps must not be missing.
     """
     finer = next((index for index, old in enumerate(reversed(before)) if old is not None), None)
     if finer is None:
@@ -168,7 +167,7 @@ def vanished(case: Case, before: Sequence[Old | None]) -> tuple[Check, ...]:
 
 
 def lost(baseline: Baseline, grid: Iterable[Case]) -> tuple[tuple[str, str], ...]:
-    """(scene, method) of the baseline's cases that the grid lacks."""
+    """(scene, method) of the cases that are in the baseline and not in the grid."""
     in_grid = {(case.scene.name, case.method) for case in grid}
     return tuple(
         pair for pair in dict.fromkeys((scene, method) for scene, method, *_ in baseline.cells) if pair not in in_grid
@@ -176,14 +175,14 @@ def lost(baseline: Baseline, grid: Iterable[Case]) -> tuple[tuple[str, str], ...
 
 
 def grown(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> tuple[Check, ...]:
-    """The checks of `reports.gate.change.growth`; none if the versions are those of the baseline."""
+    """The checks of `reports.gate.change.growth`. Empty if the versions are those of the baseline."""
     if baseline.same_versions:
         return ()
     return growth(pair for verdict in verdicts for pair in verdict.pairs)
 
 
 def remarks(verdict: CaseVerdict) -> tuple[str, ...]:
-    """Sentences that do not change a verdict: improvements, and CPU times of more than DEAR times the baseline's."""
+    """Sentences about improvements and about large CPU times, which do not affect a verdict."""
     known = (sentence for row, old in verdict.pairs for sentence in describe_improvements(row, old))
     dear = (f"{verdict.cost:.3g} times the CPU time of the baseline",) if verdict.cost > DEAR else ()
     return tuple(dict.fromkeys([*known, *dear]))
