@@ -1,7 +1,7 @@
 """Andrews' squeezing mechanism as a scene, with the numbers and the names of the test set for initial value problems.
 
-The three pairs of bars, the reduced inertia and the potential are closed functions of the crank's angle phi: see
-"Andrews' squeezing mechanism" in `reference/scenes/derivations.md`. Vectors of the plane are complex numbers.
+The directions of the bars, the reduced inertia and the potential are closed functions of the crank's angle phi, which
+`reference/scenes/derivations.md` derives. Vectors of the plane are complex numbers.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positi
 
 BODY_NAMES = ("K1", "K2", "K3", "K4", "K5", "K6", "K7")
 QUARTER = math.pi / 2
-# Tolerance that is small enough for the last published digit, which other methods confirm.
+# Tolerance at which the motion has all published digits.
 ANDREWS_TOLERANCE = gauss.WINDOW_TOLERANCE / 10
-# Sides (`Dyad.side`) of the joints of the three pairs: bar and rod, upper, lower.
+# `Dyad.side` of three pairs of bars in the order bar and rod, upper, lower.
 SIDES = (-1, 1, -1)
 
 
@@ -40,10 +40,11 @@ SIDES = (-1, 1, -1)
 class Andrews(PlacedScene):
     """Seven bodies of `masses` [kg] and `inertias` [kg m^2], from rest with the crank at `angle` [rad].
 
-    Lengths [m], by the test set's letters: `crank` rr, ra; `rod` d, da; `bar` ss, sa, sb, and `spring_point` sc, sd;
-    `upper` zt, ta, tb and `upper_end` e, ea; `lower` u, ua, ub and `lower_end` zf, fa: a length between joints, and
-    the position of the centre of mass. The spring has `stiffness` [N/m] and `rest_length` [m], the crank a constant
-    `torque` [N m]; no gravity. Raises InvalidMechanism for numbers that don't assemble at the start.
+    Lengths [m] in the test set's letters are `crank` (rr, ra), `rod` (d, da), `bar` (ss, sa, sb), `spring_point` (sc,
+    sd), `upper` (zt, ta, tb), `upper_end` (e, ea), `lower` (u, ua, ub) and `lower_end` (zf, fa). In each field but
+    `spring_point` the length between two joints is first, and the position of the centre of mass follows. The spring
+    has `stiffness` [N/m] and `rest_length` [m]. The crank has a constant `torque` [N m]. There is no gravity. Raises
+    InvalidMechanism for numbers that don't assemble at the start.
     """
 
     name: ClassVar[str] = "andrews"
@@ -77,12 +78,12 @@ class Andrews(PlacedScene):
 
     @property
     def samples(self) -> int:
-        """A hundred samples; in half a millisecond the crank rotates by up to half a radian."""
+        """There are a hundred samples, since the crank rotates by up to half a radian in half a millisecond."""
         return 100
 
     @property
     def pairs(self) -> tuple[Dyad, Dyad, Dyad]:
-        """Bar and rod from B to the crank's end, and the pairs from A to P."""
+        """The pair of bar and rod from B to the crank's end, and two pairs from A to P."""
         firsts, seconds = (
             (self.bar[0], self.upper[0], self.lower[0]),
             (self.rod[0], self.upper_end[0], self.lower_end[0]),
@@ -93,8 +94,8 @@ class Andrews(PlacedScene):
     def angles(self, phi: ArrayLike) -> tuple[Moving, ...]:
         """Angles of the seven bodies [rad] and their derivatives by the crank's angle phi (...) [rad].
 
-        Frames are those of the test set. The first angle is phi; the others are between -pi and pi, since these bodies
-        swing. NaN for angles at which the bars can't be assembled.
+        Frames are those of the test set. The crank's angle is phi; the angles of the swinging bodies are between -pi
+        and pi. NaN for angles at which the bars can't be assembled.
         """
         return self._angles(np.asarray(phi, dtype=float))
 
@@ -107,12 +108,12 @@ class Andrews(PlacedScene):
         end = direction(bar).times(self.bar[0]).shifted(pivot_b - pivot_a)  # P, from A
         delta, psi = upper.angles(end)
         epsilon, chi = lower.angles(end)
-        # The frames of 3, 4 and 7 have their y axis along the bar, backwards.
+        # In bodies 3, 4 and 7 the y axis points backwards along the bar.
         return turning, rod, bar.shifted(QUARTER), psi.shifted(QUARTER), delta, chi, epsilon.shifted(QUARTER)
 
     @cached_property
     def _points(self) -> tuple[dict[str, complex], ...]:
-        """The joints' points [m] of each body by name, from its centre of mass, in its own frame."""
+        """For each body, names of joints to their points [m] in the body's frame, from the centre of mass."""
         (rr, ra), (d, da), (ss, sa, sb), (sc, sd) = self.crank, self.rod, self.bar, self.spring_point
         (zt, ta, tb), (e, ea), (u, ua, ub), (zf, fa) = self.upper, self.upper_end, self.lower, self.lower_end
         return (
@@ -126,13 +127,13 @@ class Andrews(PlacedScene):
         )
 
     def _placed(self, phi: Array) -> tuple[tuple[Moving, ...], list[Moving], Moving]:
-        """Angles and centres of mass of the bodies, and the spring's vector, by the crank's angle."""
+        """Angles and centres of mass of the bodies, and the spring's vector, as functions of the crank's angle."""
         angles = self._angles(phi)
         frames = [direction(angle) for angle in angles]
         ends = {"O": Moving(*(0j * frames[0].value,) * 3)}
         ends["A"], ends["B"] = (ends["O"].shifted(complex(*pivot)) for pivot in (self.pivot_a, self.pivot_b))
         centres: dict[int, Moving] = {}
-        # The centre of mass and the second joint of each body are computed from a known point of the body.
+        # The first point of each body is known; it determines the centre of mass and the second point.
         for body, start, other in (
             (0, "O", "R"),
             (1, "R", "P"),
@@ -148,7 +149,7 @@ class Andrews(PlacedScene):
         return angles, [centres[body] for body in range(7)], ends["D"].shifted(-complex(*self.pivot_c))
 
     def _reduced(self, phi: Array) -> tuple[Array, Array, Array]:
-        """m [kg m^2], m' and V' [N m] (...) by the crank's angle."""
+        """m [kg m^2], m' and V' [N m] (...) as functions of the crank's angle."""
         angles, centres, spring = self._placed(phi)
         reduced, change = 0.0 * phi, 0.0 * phi
         for mass, inertia, angle, centre in zip(self.masses, self.inertias, angles, centres, strict=True):
@@ -229,7 +230,7 @@ class Andrews(PlacedScene):
         return Mechanism(bodies, joints, (0.0, 0.0), forces)
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """1 if the joints of all three pairs are on the same sides as at the start (...,), else -1."""
+        """1 if the joints of all three pairs of bars are on the same side as at the start (...,), else -1."""
         angle = pose[..., 2]
         folds = (
             (angle[..., 2] - QUARTER, angle[..., 1]),
@@ -275,7 +276,8 @@ class Dyad(Valid):
     side: Sign
 
     def angles(self, reach: Moving) -> tuple[Moving, Moving]:
-        """Directions of both bars [rad], from -pi to pi, for the complex vector `reach` [m] from pivot to point.
+        """Directions of both bars [rad], between -pi and pi, for the complex vector `reach` [m] from the pivot to the
+        point.
 
         NaN for points out of reach. reach = a e^(i mu) + b e^(i nu), so the component of its derivative along one bar
         depends only on the rotation of the other.

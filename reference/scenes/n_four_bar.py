@@ -1,7 +1,7 @@
-"""N four-bars side by side, the benchmark whose one freedom becomes N + 1 twice a turn: an exact motion by symmetry.
+"""The exact motion of N four-bars side by side, a benchmark whose one freedom becomes N + 1 freedoms twice a turn.
 
 The whole chain moves as one pendulum, whose exact motion is that of `Pendulum`. If the cranks are parallel to the
-couplers, N rows depend on the others, and forces grow without limit for N > 1: see "N four-bars side by side" in
+couplers, N rows depend on the remaining rows, and forces grow without limit for N > 1. The derivation is in
 `reference/scenes/derivations.md`.
 """
 
@@ -44,11 +44,11 @@ class NFourBar(Scene):
     gravity: Positive = 9.81
     speed: float = 1.0
     duration: Positive = 10.0
-    horizon: Positive = 10.0  # freedoms of the symmetric motion; engines may leave this motion at singular positions
+    horizon: Positive = 10.0  # a symmetric motion, which engines may leave at singular positions
 
     @cached_property
     def pendulum(self) -> Pendulum:
-        """The motion of the cranks' common angle from the upright position; a motion to +x at the top is clockwise."""
+        """The motion of the angle that all cranks have. A motion to +x at the top is clockwise."""
         n = self.loops
         frequency = math.sqrt(3 * (3 * n + 1) * self.gravity / (2 * (4 * n + 1) * self.length))
         return Pendulum(frequency, math.pi, -self.speed / self.length)
@@ -113,7 +113,8 @@ class NFourBar(Scene):
         """The reactions (times, rows) [N] in closed form, accurate also near a singular position, where they are large.
 
         A coupler that doesn't rotate has equal vertical forces at its ends. The balance of moments of a crank about its
-        pivot gives the horizontal force on its top; the balance of each coupler gives the force on the next crank.
+        pivot gives the horizontal force on its top. The balance of forces of each coupler gives the force on the next
+        crank.
         """
         n, m, size = self.loops, self.mass, self.length
         _, _, moving = self._placement(angle, rate, acceleration)
@@ -140,8 +141,8 @@ class NFourBar(Scene):
         """+1 if every loop is a parallelogram, -1 if a loop is folded, with its coupler along a crank.
 
         A loop of equal bars can fold in two ways: one crank lies along the ground and the other along the coupler. The
-        branch is that of the form with the smallest error of the angles; at a singular position all forms fit, and the
-        branch is +1.
+        form with the smallest error of the angles is chosen; at a singular position all forms fit, and the branch is
+        +1.
         """
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
         first, second = cranks[..., :-1], cranks[..., 1:]
@@ -160,7 +161,7 @@ class TenFourBars(NFourBar):
 
     @property
     def samples(self) -> int:
-        """Twenty per second, as in the benchmark."""
+        """The benchmark has twenty samples per second."""
         return max(1, round(20 * self.duration))
 
 
@@ -175,5 +176,5 @@ class FortyFourBars(NFourBar):
 
     @property
     def samples(self) -> int:
-        """Five per second, a quarter of the benchmark's, since 242 reactions cost more than the motion."""
+        """Five samples per second, a quarter of the benchmark's, since 242 reactions cost more than the motion."""
         return max(1, round(5 * self.duration))

@@ -1,7 +1,7 @@
 """The closed form of a four-bar for many crank angles: angles, rates and accelerations.
 
 The triangles A B D and B C D on both sides of the diagonal B D are solved with differences that have no cancellation.
-The letters of the code are those of "The four-bar in closed form" in `reference/scenes/derivations.md`.
+`reference/scenes/derivations.md` defines the letters and derives the equations.
 """
 
 from __future__ import annotations
@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Interval = tuple[float, float]
 
-# Number of roundings by which a crank angle may be outside of the reachable range.
+# Number of roundings by which a crank angle may be outside the reachable range.
 ANGLE_ROUNDINGS = 16
 
 
 class Kinematics(NamedTuple):
-    """Angles [rad], rates [rad/s] and accelerations [rad/s^2] of coupler and rocker, in the shape of the arguments."""
+    """Angles [rad], rates [rad/s] and accelerations [rad/s^2] of coupler and rocker, with the shape of the
+    arguments."""
 
     beta: Any
     phi: Any
@@ -32,7 +33,7 @@ class Kinematics(NamedTuple):
 
 
 class OutOfReach(Exception):
-    """The loop can't close at an angle; `index`: the first such angle; `undetermined`: B is on D."""
+    """The loop can't close at the crank angle with this `index`. If `undetermined`, B is on D."""
 
     def __init__(self, index: int, undetermined: bool = False) -> None:
         super().__init__(index)
@@ -50,9 +51,9 @@ def difference(*terms: float) -> float:
 class Constants:
     """Constants of the closed form for lengths l1, l2, l3 [m] and the ground vector A -> D of length d [m].
 
-    heading [rad]: the direction of A -> D. outer_far: U at theta' = pi; if negative, B can't be that far from D.
-    outer_near: U at theta' = 0; if negative, there is no position. inner_near: W at theta' = 0; if negative, B can't be
-    that near to D. inner_far: W at theta' = pi; if negative, there is no position.
+    heading [rad] is the direction of A -> D. outer_near and outer_far are U at theta' = 0 and pi, inner_near and
+    inner_far are W at theta' = 0 and pi. B can't reach its largest distance from D if outer_far is negative, and its
+    smallest distance if inner_near is negative. The loop has no position if outer_near or inner_far is negative.
     """
 
     l1: float
@@ -81,7 +82,8 @@ class Constants:
         )
 
     def crank_limits(self) -> tuple[Interval, ...] | None:
-        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns, or None if it always
+        closes."""
         # U or W is zero at theta' = 2 atan(sqrt(ratio)).
         outer = 2 * math.atan2(math.sqrt(self.outer_near), math.sqrt(-self.outer_far)) if self.outer_far < 0 else None
         inner = 2 * math.atan2(math.sqrt(-self.inner_near), math.sqrt(self.inner_far)) if self.inner_near < 0 else None
@@ -96,7 +98,7 @@ class Constants:
 
 
 class Triangles(NamedTuple):
-    """A B D and B C D at crank angles (n,), in the letters of the derivation [m^2]."""
+    """The triangles A B D and B C D at crank angles (n,), in the letters of the derivation [m^2]."""
 
     square: Array  # s^2
     m: Array
@@ -110,7 +112,7 @@ class Triangles(NamedTuple):
 def closed_form(
     c: Constants, theta: Array, theta_dot: Array, theta_ddot: Array, branch: Array, order: int
 ) -> tuple[Array, ...]:
-    """The first 2 (order + 1) fields of Kinematics for arrays of one shape.
+    """The first 2 (order + 1) fields of Kinematics; all arrays have the same shape.
 
     Raises OutOfReach. At the ends of the reachable range rates and accelerations are not finite.
     """
@@ -127,7 +129,7 @@ def closed_form(
         out += beta_1 * theta_dot, phi_1 * theta_dot
         if order == 1:
             return out
-        # 2 l1 d cos(theta'), with the square of the shorter of the two bars, to avoid cancellation.
+        # This is 2 l1 d cos(theta'); the square of the shorter bar avoids cancellation.
         turned = 2 * c.l1**2 - m if c.l1 < c.d else 2 * c.d**2 - n
         y_1 = (turned - y * y * (c.l2**2 + c.l3**2 - square)) / q
         beta_2 = (h * (1 - (beta_1 + phi_1)) - y_1 * p) * half
@@ -140,14 +142,14 @@ def closed_form(
 
 def _triangles(c: Constants, theta: Array) -> Triangles:
     """The triangles at crank angles (n,). Raises OutOfReach if B C D can't close."""
-    # sin^2 and cos^2 of theta'/2, and the product of sine and cosine, from one tangent.
+    # One tangent gives sin^2 and cos^2 of theta'/2, and the product of sine and cosine.
     half, turn_x, turn_y = np.tan(0.5 * theta), math.cos(c.heading / 2), math.sin(c.heading / 2)
     sine, cosine = half * turn_x - turn_y, half * turn_y + turn_x  # both over cos(theta/2)
     product, sine, cosine = sine * cosine, sine * sine, cosine * cosine
     scale = 1 / (cosine + sine)
     fourfold = 4 * c.l1 * c.d
     along = fourfold * (sine * scale)
-    # From the end of the range where U or W is smaller, since it may be zero there.
+    # U and W are computed from the end of the range at which they are smaller, since they may be zero there.
     near_u, near_w = abs(c.outer_near) < abs(c.outer_far), abs(c.inner_near) < abs(c.inner_far)
     across = fourfold * (cosine * scale)
     u = c.outer_near - along if near_u else c.outer_far + across
@@ -169,11 +171,11 @@ def _triangles(c: Constants, theta: Array) -> Triangles:
 def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> tuple[Array, Array]:
     """beta and phi [rad], continuous in theta."""
     _, m, n, h, p, r, area = triangles
-    # v is B - D, scaled, relative to a direction from which it differs by less than a right angle: D -> A, or A -> B if
-    # that is longer.
+    # v is B - D, scaled and rotated. Its angle is measured from the longer of D -> A and A -> B and is below a right
+    # angle.
     winding = c.l1 > c.d
     vx, vy = (m, h) if winding else (n, -h)
-    # The sum of that angle and the triangle's angle is less than a whole turn, so one arctangent is enough.
+    # The sum of the angles of v and of the triangle is less than a whole turn, so one arctangent is enough.
     p, r = branch * p, branch * r
     wide_x, wide_y = vx * area, vy * area
     beta = np.arctan2(wide_y - vx * r, vy * r + wide_x)
@@ -185,7 +187,7 @@ def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> 
 
 
 def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Array, Array]:
-    """U and W, with negative values within rounding set to zero; raises OutOfReach unless every triangle closes."""
+    """U and W; negative values within rounding are set to zero. Raises OutOfReach unless every triangle closes."""
     if u.size and not min(float(np.min(u)), float(np.min(w))) >= 0:  # a NaN fails too
         allowed = -ANGLE_ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
         bad = ~(np.minimum(u, w) >= allowed)

@@ -1,4 +1,4 @@
-"""The free four-bar, with one coordinate along its configuration curve, which is regular at crank limits too.
+"""The free four-bar with one coordinate along its configuration curve, which is regular also at crank limits.
 
 t is the tangent of the configuration curve in the space of (theta, beta, phi), (theta, beta, phi)' = u t, and the root
 w of twice the kinetic energy is integrated with the angles: see "A four-bar left to itself" in
@@ -23,9 +23,9 @@ from reference.scenes.four_bar.linkage import FourBar
 Array = NDArray[np.float64]
 
 States = Callable[[Array], Any]
-# Tolerance: a thousand roundings of numpy.longdouble, or one of a double.
+# Tolerance: a thousand roundings of numpy.longdouble, or one rounding if it is a double.
 CURVE_TOLERANCE = gauss.WINDOW_TOLERANCE / 10
-# The largest component of t, relative to the squared length of the longest bar, at which the bars are in line to
+# If the largest component of t is below this fraction of the squared length of the longest bar, the bars are in line to
 # rounding.
 CHANGE_POINT = 1e-7
 
@@ -40,7 +40,7 @@ class BarAngles(NamedTuple):
 
 @dataclass(frozen=True)
 class CurveMotion(Valid):
-    """Uniform bars of given masses [kg] under gravity [m/s^2], moving along the four-bar's configuration curve."""
+    """Uniform bars with masses [kg] under gravity [m/s^2] that move along the four-bar's configuration curve."""
 
     four_bar: FourBar
     masses: tuple[Positive, Positive, Positive]
@@ -87,7 +87,7 @@ class CurveMotion(Valid):
 
         root = np.sqrt(self._inertia(start[:3], self._direction(start[:3]))) / largest
         state = np.append(unit * start[:3], start[3] * root)
-        # The integrator is for second-order equations. The first-order state is its velocity; its positions are unused.
+        # The integrator is for second-order equations. The state is its velocity, and its positions are not used.
         solution = gauss.integrate(slopes, np.zeros(4), state, until, float(unit), stages, CURVE_TOLERANCE)
 
         def states(times: Array) -> Any:
@@ -144,7 +144,7 @@ class CurveMotion(Valid):
 
     @property
     def _cross(self) -> Any:
-        """The inertia by which crank and coupler are coupled if they are in line [kg m^2]."""
+        """The inertia that couples crank and coupler if they are in line [kg m^2]."""
         return np.longdouble(self.masses[1]) * np.longdouble(self.four_bar.crank) * np.longdouble(self.four_bar.coupler)
 
     def _inertia(self, angle: Any, t: Any) -> Any:

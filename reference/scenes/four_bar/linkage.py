@@ -1,8 +1,8 @@
 """The four-bar linkage in closed form: position, rates, accelerations, limits and forces (sample 18.15, 18.67-18.71).
 
-Angles [rad] from +x, counter-clockwise: theta of A -> B (crank), beta of B -> C (coupler), phi of D -> C (rocker; the
-chapter's "rod CD", whose direction must be read from D). A is the origin, D anywhere else. `branch` is +1 for C left of
-the directed line B -> D, as in the chapter's figure, -1 for the other branch (assembly mode).
+Angles [rad] from +x, counter-clockwise: theta of A -> B (crank), beta of B -> C (coupler), phi of D -> C (rocker, the
+chapter's "rod CD"). A is the origin, D anywhere else. `branch` is +1 for C left of the directed line B -> D, as in the
+chapter's figure, -1 for the other branch (assembly mode).
 Forces are those of uniform bars, by Newton's and Euler's laws.
 """
 
@@ -43,7 +43,7 @@ class Forces(NamedTuple):
 
 @validated
 def three_densities(density: Densities) -> tuple[float, float, float]:
-    """Densities of crank, coupler and rocker [kg/m] from one number or three; raises InvalidMechanism."""
+    """Densities of crank, coupler and rocker [kg/m] from one or three numbers. Raises InvalidMechanism."""
     return density if isinstance(density, tuple) else (density, density, density)
 
 
@@ -56,15 +56,15 @@ def bar_forces(
     rates: tuple[Numbers, Numbers, Numbers],
     accelerations: tuple[Numbers, Numbers, Numbers],
 ) -> Forces:
-    """Forces that a given motion of uniform bars needs.
+    """Forces in a known motion of uniform bars.
 
     lengths [m]; density [kg/m] of all bars or of crank, coupler and rocker; gravity [m/s^2]. Angles, rates and
     accelerations are those of crank, coupler and rocker (theta, beta, phi); they broadcast.
     """
     masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
     falling = complex(*gravity)
-    # Plane vectors are complex numbers. `half` has the vectors from a bar's first end to its centre, `moving` the
-    # accelerations of the centre relative to that end.
+    # Plane vectors are complex numbers. `half` is the vector from a bar's first end to its centre, `moving` the
+    # acceleration of the centre relative to that end.
     half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
     moving = [
         arm * (1j * np.asarray(acceleration) - np.asarray(rate) ** 2)
@@ -74,12 +74,12 @@ def bar_forces(
         masses[0] * (moving[0] - falling),
         masses[1] * (2 * moving[0] + moving[1] - falling),
         masses[2] * (moving[2] - falling),
-    ]  # m (a - g) of each bar: the sum of its pin forces
+    ]  # m (a - g) of each bar is the sum of its pin forces
     spin = [
         mass * length**2 / 12 * np.asarray(acceleration)
         for mass, length, acceleration in zip(masses, lengths, accelerations, strict=True)
     ]
-    # The moments of the coupler about B and of the rocker about D are two equations for the force at C.
+    # The balances of moments of the coupler about B and of the rocker about D determine the force at C.
     coupler, rocker = 2 * half[1], 2 * half[2]
     about_b = -(spin[1] + _cross(half[1], pull[1]))
     about_d = spin[2] + _cross(half[2], pull[2])
@@ -106,7 +106,7 @@ Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSOD
 
 
 class RateIntegration(NamedTuple):
-    """Angles [rad] at times t [s], the number of evaluations, and the reason for a stop, or ''.
+    """Angles [rad] at times t [s], the number of evaluations, and the reason if the method stopped, else ''.
 
     Angles are NaN after the method stopped.
     """
@@ -131,12 +131,12 @@ def integrate_rates(
     every: Count = 10,
     limit: Count = 100_000,
 ) -> RateIntegration:
-    """Integrate (theta, beta, phi) from `start` at t[0] with the rates (18.70), (18.71) and theta' constant.
+    """Integrate (theta, beta, phi) from `start` at t[0] with the rates (18.70), (18.71) and a constant theta'.
 
     lengths l1, l2, l3 [m]; theta_dot [rad/s]; t [s] increasing. "euler" and "rk4" take `every` steps between samples;
-    scipy's RK45, RK23, DOP853, Radau, BDF and LSODA choose steps by rtol and atol, as solve_ivp does. It stops after
-    `limit` evaluations, or if scipy's method fails: near sin(beta - phi) = 0, which drift reaches even for a crank that
-    turns fully, the steps tend to zero. Raises InvalidMechanism, a ValueError.
+    scipy's RK45, RK23, DOP853, Radau, BDF and LSODA choose steps by rtol and atol, as solve_ivp does. The integration
+    stops after `limit` evaluations, or if scipy's method fails. Steps tend to zero near sin(beta - phi) = 0, which
+    drift reaches even for a crank that turns fully. Raises InvalidMechanism, a ValueError.
     """
     times = t
     if times.size < 2 or not np.all(np.diff(times) > 0):
@@ -203,25 +203,26 @@ def _fixed(
 
 
 class Unreachable(InvalidMechanism):
-    """A crank angle at which the loop can't close; the message has the angle and the possible range."""
+    """A crank angle at which the loop can't close; the message states the angle and the possible range."""
 
 
 @dataclass(frozen=True)
 class FourBar(Valid):
     """A planar four-bar A B C D with lengths AB, BC, CD [m] and D at `ground` [m].
 
-    Every method broadcasts its arguments. Angles are continuous functions of theta (not wrapped) within one reachable
-    interval; they increase with the crank's turns if the crank is longer than AD. The chapter's start, theta = pi/2,
-    has beta = pi/4 and phi = 3 pi/4; the angles of the other branch are measured from the same direction D -> B.
+    Every method broadcasts its arguments. Angles are not wrapped and are continuous in theta within one reachable
+    interval. They increase with the crank's turns if the crank is longer than AD. The chapter's start, theta = pi/2,
+    has beta = pi/4 and phi = 3 pi/4. Both branches measure angles from the same direction D -> B.
 
     Errors are a few roundings in regular positions. At a distance x [rad] from the end of a reachable interval, angles
-    differ from their end value by about sqrt(x), so that their error is about eps / sqrt(x), and sqrt(eps) = 1e-8 at
-    the end; rates grow like 1 / sqrt(x), with a relative error of eps / x, and at the end they are infinite or NaN. At
-    a change point the crank does not determine C, and each `branch` has a kink. With crank = AD and coupler = rocker, B
-    meets D, where C is not determined: that crank angle is Unreachable, and the angles jump by pi across it.
+    have an error of about eps / sqrt(x), at most sqrt(eps) = 1e-8. Rates grow like 1 / sqrt(x) there, with a relative
+    error of eps / x; at the end they are infinite or NaN. At a change point the crank does not determine C, and each
+    `branch` has a kink. If crank = AD and coupler = rocker, B meets D, where C is not determined. This crank angle is
+    Unreachable, and the angles jump by pi across it.
 
-    Raises InvalidMechanism for lengths not positive, D on A, or bars that can't be assembled at any crank angle;
-    methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or -1.
+    Raises InvalidMechanism for lengths that are not positive, D on A, or bars that can't be assembled at any crank
+    angle. Methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or
+    -1.
     """
 
     crank: Positive
@@ -259,7 +260,7 @@ class FourBar(Valid):
 
     @validated
     def angles(self, theta: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
-        """beta and phi [rad] in closed form; the chapter claims that no closed form exists."""
+        """beta and phi [rad] in closed form, which does not exist according to the chapter."""
         return self._evaluated(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
 
     @validated
@@ -271,7 +272,7 @@ class FourBar(Valid):
     def accelerations(
         self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
     ) -> tuple[Any, Any]:
-        """beta_ddot and phi_ddot [rad/s^2]: the time derivative of (18.69), solved."""
+        """beta_ddot and phi_ddot [rad/s^2] from the time derivative of (18.69)."""
         return self.kinematics(theta, theta_dot, theta_ddot, branch)[4:]
 
     @validated
@@ -306,11 +307,12 @@ class FourBar(Valid):
         )
 
     def crank_limits(self) -> tuple[Interval, ...] | None:
-        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns; None if all do."""
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns, or None if it always
+        closes."""
         return self._constants.crank_limits()
 
     def grashof(self) -> str:
-        """The class by name: crank-rocker, double-crank, double-rocker, triple-rocker or change-point."""
+        """The Grashof class: crank-rocker, double-crank, double-rocker, triple-rocker or change-point."""
         return grashof(*self.lengths, self.ground_length)
 
     @validated
@@ -323,11 +325,11 @@ class FourBar(Valid):
         density: Densities = 1.0,
         gravity: Vector = (0.0, -9.81),
     ) -> Forces:
-        """Pin forces A, B, C, D (..., 2) [N] and the crank's torque (...) [N m] that this motion of uniform bars needs.
+        """Pin forces A, B, C, D (..., 2) [N] and the crank's torque (...) [N m] in this motion of uniform bars.
 
         density [kg/m], one number or three (crank, coupler, rocker); gravity [m/s^2]. A pin's force acts on its second
         body: A ground on crank, B crank on coupler, C coupler on rocker, D ground on rocker. The torque acts on the
-        crank from the ground. At a crank limit they are not finite.
+        crank from the ground. Forces are not finite at a crank limit.
         """
         motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
         return bar_forces(
@@ -348,6 +350,7 @@ class FourBar(Valid):
         branch: Sign = 1,
         **settings: Any,
     ) -> RateIntegration:
-        """The chapter's pseudocode from a start, a method under test; settings: see `integrate_rates`."""
+        """The motion by the chapter's pseudocode, which is a method under test. `integrate_rates` explains the
+        settings."""
         beta, phi = self.angles(theta, branch)
         return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, np.asarray(t), **settings)

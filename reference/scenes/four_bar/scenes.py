@@ -30,8 +30,8 @@ class FourBarScene(Scene):
     """Uniform bars as bodies "crank", "coupler", "rocker", pins "A", "B", "C", "D" between them in that order.
 
     Body frames have their x axis along the bar (A -> B, B -> C, D -> C) and their origin at its middle; body angles are
-    theta, beta, phi, not wrapped. Lengths and ground [m], start [rad], rate [rad/s], density [kg/m] of all bars or of
-    the three, gravity [m/s^2]. Raises InvalidMechanism, and Unreachable for a start at which the loop can't close.
+    theta, beta, phi, not wrapped. Lengths and ground [m], start [rad], rate [rad/s], density [kg/m] (one or three
+    numbers), gravity [m/s^2]. Raises InvalidMechanism, and Unreachable for a start at which the loop can't close.
     """
 
     crank: Positive = 0.4
@@ -145,10 +145,10 @@ class DrivenFourBar(FourBarScene):
 
 @dataclass(frozen=True)
 class FreeFourBar(FourBarScene):
-    """The linkage under its weight, from rest or with a crank rate; it may pass crank limits.
+    """The linkage moves under its weight from rest or with a crank rate. It may pass crank limits.
 
-    With one freedom and constant energy, errors are drifts of energy and time, which grow about linearly. So the
-    horizon is the duration. (This does not hold for the energy of an unstable equilibrium, or at a change point.)
+    With one freedom and constant energy, errors are drifts of energy and time, which grow about linearly, so the
+    horizon is the duration. Errors grow faster at a change point and with the energy of an unstable equilibrium.
     """
 
     name: ClassVar[str] = "free_four_bar"
@@ -176,8 +176,8 @@ class FreeFourBar(FourBarScene):
         return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """The error (times,) of the motion: the largest change [m, rad, m/s, rad/s] of a pose or twist by another rule,
-        rounding to double included."""
+        """The error (times,) of the motion, estimated by the largest difference [m, rad, m/s, rad/s] of a pose or twist
+        to another collocation rule. It includes rounding to double."""
         times = self.times(t)
         pairs = zip(self._bodies(self._angles(times)), self._bodies(self._angles(times, COARSE_STAGES)), strict=True)
         return np.max([np.abs(fine - coarse).max(axis=(1, 2)) for fine, coarse in list(pairs)[:2]], axis=0)
@@ -211,8 +211,8 @@ class SpinningFourBar(FreeFourBar):
     rate: float = 10.0
 
 
-# Sine of the transmission angle below which the rows count as dependent, so that the reactions of ideal rigid bars are
-# not determined.
+# If the sine of the transmission angle is below this value, rows count as dependent and reactions of rigid bars as not
+# determined.
 IN_LINE = 1e-6
 
 
@@ -220,9 +220,8 @@ IN_LINE = 1e-6
 class Parallelogram(DrivenFourBar):
     """A parallelogram linkage: twice a revolution all bars are in line.
 
-    At these positions two motions satisfy the joints, with parallel and with crossed bars. The reference motion is
-    smooth: its coupler is always parallel to the ground. The `branch` is not constant, since C passes from one side of
-    B -> D to the other.
+    From these positions the bars can move on parallel or crossed. The reference motion is smooth: its coupler is always
+    parallel to the ground. The `branch` is not constant, since C passes from one side of B -> D to the other.
     """
 
     name: ClassVar[str] = "parallelogram"
@@ -265,7 +264,7 @@ class Parallelogram(DrivenFourBar):
 
 @dataclass(frozen=True)
 class OverdrivenFourBar(DrivenFourBar):
-    """A triple-rocker whose crank is driven beyond its limit; `motion` raises Unreachable for later times."""
+    """A triple-rocker whose crank is driven beyond its limit. For times after the limit `motion` raises Unreachable."""
 
     name: ClassVar[str] = "overdriven_four_bar"
     source: ClassVar[str] = "the singular set sin(beta - phi) = 0 of eqs. 18.70-18.71"

@@ -1,10 +1,10 @@
-"""A chain of N links: joint forces by one banded solve at the cost O(N), and the motion.
+"""The motion of a chain of N links; one banded system gives the joint forces at the cost O(N).
 
 Angles are absolute, from the downward vertical, counter-clockwise. Link i has its upper end at joint i; the half-vector
-h = (l/2)(sin, -cos) leads from there to the centre of mass, and from there to the lower end. F_i is the force of joint
-i on link i. The laws of Newton and Euler, m a = F_i - F_(i+1) + m g and I angle'' = -h x (F_i + F_(i+1)), and equal
-accelerations of two links at their joint give a block-tridiagonal, symmetric, positive definite system for the forces:
-the matrix is J M^-1 J^T of the chain.
+h = (l/2)(sin, -cos) leads from the upper end to the centre of mass, and from the centre of mass to the lower end. F_i
+is the force of joint i on link i. The laws of Newton and Euler, m a = F_i - F_(i+1) + m g and I angle'' = -h x (F_i +
+F_(i+1)), and equal accelerations of two links at their joint give a block-tridiagonal, symmetric, positive definite
+system for the forces: the matrix is J M^-1 J^T of the chain.
 """
 
 from __future__ import annotations
@@ -36,22 +36,24 @@ from reference.scenes.pendulum.link import direction_of
 
 Array = NDArray[np.float64]
 
-# Ratio of masses above which the forces are refined: the acceleration of a light link between heavy links is a small
+# Ratio of masses above which the forces are refined. The acceleration of a light link between heavy links is a small
 # difference of large forces.
 UNEVEN = 10.0
 # Number of steps of iterative refinement. Each step multiplies the error by about the relative error of the first
 # solution, so three steps suffice up to a ratio of 1e9.
 MAX_REFINEMENTS = 3
-# Relative correction below which the refinement ends: its square is below the rounding of extended precision.
+# Relative correction below which the refinement ends. The square of this number is below the rounding of extended
+# precision.
 CORRECTED = 3e-10
 
 
 Motion = Callable[[ArrayLike], Array]
 
-# Number of links up to which collocation is the fastest method, since a numpy call costs more than its arithmetic. The
-# explicit method is faster for more links.
+# Number of links up to which collocation is faster than the explicit method, since a numpy call costs more than its
+# arithmetic.
 FEW_LINKS = 20
-# Difference of starts [rad] whose growth is measured: small compared with a swing, large compared with rounding.
+# Difference of starts [rad] whose growth is measured. It is small compared with a swing and large compared with
+# rounding.
 PERTURBATION = 1e-6
 # Factor by which a difference grows until the horizon.
 TENFOLD = 10.0
@@ -88,7 +90,7 @@ class Chain(Valid):
 
     @cached_readonly
     def inertia(self) -> Array:
-        """About the centres of mass (links,) [kg m^2]."""
+        """Inertias (links,) about the centres of mass [kg m^2]."""
         return self._mass * self._length**2 / 12
 
     @validated
@@ -98,12 +100,12 @@ class Chain(Valid):
         return self._forces(angle, rate).astype(float)
 
     def _forces(self, angle: Array, rate: Array) -> Any:
-        """See `forces`; without checks, and in extended precision if the masses differ by more than UNEVEN.
+        """`forces` without checks of arguments, in extended precision if the masses differ by more than UNEVEN.
 
         All states of a batch are one banded system with a block for each state, at the cost O(states x links). For a
-        ratio r of masses its error is about r roundings. If r is larger than UNEVEN, the solution is refined: the
-        residual, the relative accelerations of the links at the joints, is computed in extended precision. The error is
-        then r / 2000 roundings (r if numpy.longdouble is a double).
+        ratio r of masses the error is about r roundings. If r is larger than UNEVEN, the solution is refined with
+        residuals in extended precision. The error is then r / 2000 roundings, or r roundings if numpy.longdouble is a
+        double.
         """
         leading = angle.shape[:-1]
         links, uneven = len(self._mass), self._mass.max() > UNEVEN * self._mass.min()
@@ -112,7 +114,7 @@ class Chain(Valid):
         normal = perpendicular(half)
         outer = normal[..., :, None] * normal[..., None, :] / self.inertia[:, None, None]
         light = np.eye(2) / self._mass[:, None, None]
-        # Acceleration of an end of a link by a force on the same end (near) and on the other end (far).
+        # Acceleration of one end of a link by a unit force on this end (near) or on the opposite end (far).
         near, far = light + outer, outer - light
         diagonal = near.copy()
         diagonal[..., 1:, :, :] += near[..., :-1, :, :]
@@ -126,7 +128,7 @@ class Chain(Valid):
             centripetal = rate[..., None] ** 2 * half
             right = -centripetal
             right[..., 1:, :] -= centripetal[..., :-1, :]
-            right[..., 0, 1] += self.gravity  # gravity is the same on both sides of every other joint
+            right[..., 0, 1] += self.gravity  # at the lower joints gravity cancels
             solution = solveh_banded(
                 banded.reshape(4, -1), right.reshape(-1), overwrite_ab=True, overwrite_b=True, check_finite=False
             )
@@ -145,7 +147,8 @@ class Chain(Valid):
         return forces
 
     def _residual(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
-        """A function from forces (..., links, 2) to the relative accelerations at the joints [m/s^2], extended."""
+        """A function from forces (..., links, 2) to relative accelerations at the joints [m/s^2] in extended
+        precision."""
         half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
         normal = perpendicular(half)
         centripetal = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), np.zeros_like(half[..., 0]), half)
@@ -165,7 +168,7 @@ class Chain(Valid):
         return residual
 
     def _checked(self, *arguments: ArrayLike) -> list[Array]:
-        """Angles, rates and accelerations as arrays; InvalidMechanism unless all have the shape (..., links)."""
+        """Angles, rates and accelerations as arrays. Raises InvalidMechanism unless all have the shape (..., links)."""
         states = [np.asarray(argument, dtype=float) for argument in arguments]
         shapes = [state.shape for state in states]
         if any(shape != shapes[0] or shape[-1:] != (self.links,) for shape in shapes):
@@ -182,7 +185,7 @@ class Chain(Valid):
         return self._accelerations(angle, rate).astype(float)
 
     def _accelerations(self, angle: Any, rate: Any) -> Any:
-        """See `accelerations`; without checks, in the precision of the forces."""
+        """`accelerations` without checks of arguments, in the precision of the forces."""
         forces = self._forces(angle, rate)
         forces[..., :-1, :] += forces[..., 1:, :]
         normal = perpendicular(0.5 * self._length[:, None] * direction_of(np.asarray(angle, dtype=forces.dtype)))
@@ -201,7 +204,7 @@ class Chain(Valid):
         return self._by_collocation(start, until)
 
     def _by_collocation(self, start: Array, until: float, coarse: bool = False) -> gauss.CollocationMotion:
-        """The motion by collocation; `coarse`: by the rule with fewer stages and ten times the tolerance."""
+        """The motion by collocation. If `coarse`, the rule has fewer stages and ten times the tolerance."""
         angle, rate = np.split(start, 2)
         unit = float(units_of_motion(self.rates, start)[-1])
         stages, tolerance = (gauss.COARSE_STAGES, gauss.COARSER) if coarse else (gauss.STAGES, 1.0)
@@ -213,7 +216,7 @@ class Chain(Valid):
     def motion(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> tuple[Array, Array, Array]:
         """Angles, rates and accelerations (times, links) [rad, rad/s, rad/s^2] at times t (times,) [s].
 
-        The start is an angle [rad] and a rate [rad/s] for each link (links,). For the error see `truth_error`.
+        The start is an angle [rad] and a rate [rad/s] for each link (links,). `truth_error` bounds the error.
         """
         times = sample_times("chain", t)
         state = self.solved(angle, rate, max(float(times.max(initial=0.0)), math.ulp(1.0)))(times)
@@ -266,14 +269,14 @@ class Chain(Valid):
 
     @validated
     def divergence(self, angle: ArrayLike, rate: ArrayLike, t: Times, starts: Count = 3) -> Array:
-        """Growth factor of a small difference of starts at times t (times,) [s]: the largest of some.
+        """The largest growth factor of a small difference of starts at times t (times,) [s].
 
-        `starts` neighbours of the motion are integrated too. Their angles differ by PERTURBATION in fixed pseudo-random
-        directions. The norm is the largest difference of an angle.
+        The number of neighbours that are integrated is `starts`. Their start angles differ by PERTURBATION in
+        pseudo-random directions with a fixed seed. A difference is measured by its largest angle.
         """
         t, start = sample_times("chain", t), self._start(angle, rate)
         until = max(float(t.max(initial=0.0)), math.ulp(1.0))
-        tolerance = PERTURBATION * 1e-4  # far below the difference that is measured
+        tolerance = PERTURBATION * 1e-4  # far below the measured difference
         generator = np.random.default_rng(0)
         together = np.tile(start, (starts + 1, 1))
         for neighbour in together[1:]:
@@ -281,7 +284,7 @@ class Chain(Valid):
             neighbour[: self.links] += move * (PERTURBATION / np.abs(move).max())
 
         def rates(state: Array) -> Array:
-            """The rates of all motions in one call, which costs little more than one motion."""
+            """The rates of all motions; one call costs little more than for one motion."""
             return self.rates(state.reshape(*state.shape[:-1], *together.shape)).reshape(state.shape)
 
         unit = np.tile(units_of_motion(self.rates, start), starts + 1)
@@ -291,11 +294,11 @@ class Chain(Valid):
 
     @validated
     def horizon(self, angle: ArrayLike, rate: ArrayLike, until: Positive) -> tuple[float, float]:
-        """(time [s] at which a difference has grown tenfold, rate [1/s] of its exponential growth from then to
+        """(time [s] at which a difference has grown tenfold, rate [1/s] of its exponential growth between that time and
         `until`).
 
-        If it does not grow tenfold, the first is `until` and the second NaN. The rate is fitted to the logarithm of
-        `divergence` over a finite time, so it depends on `until`; its limit is a Lyapunov exponent.
+        If the difference does not grow tenfold, the time is `until` and the rate is NaN. The rate is fitted to the
+        logarithm of `divergence` up to `until`; for late `until` it tends to a Lyapunov exponent.
         """
         t = np.linspace(0, until, 201)
         growth = self.divergence(angle, rate, t)
@@ -308,9 +311,10 @@ class Chain(Valid):
 
     @validated
     def truth_error(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> Array:
-        """A bound (times,) on the error of the integrated motion [rad, rad/s], from a tolerance 10 times coarser.
+        """A bound (times,) on the error of the integrated motion [rad, rad/s], from the difference to a tolerance 10
+        times larger.
 
-        By collocation it is ten times the difference, and at least rounding, since both tolerances are at rounding.
+        For collocation it is ten times the difference plus rounding, since both tolerances are near rounding.
         """
         times, start = sample_times("chain", t), self._start(angle, rate)
         if self.links > FEW_LINKS:

@@ -1,4 +1,4 @@
-"""Exact motion of one link under gravity: swinging, whirling and on the separatrix; and the point pendulum.
+"""Exact motion of one link under gravity (swinging, whirling or on the separatrix) and of the point pendulum.
 
 angle'' = -f^2 sin(angle), the angle from the downward vertical, counter-clockwise. With s = sin(angle/2) and p =
 rate/(2f) the energy is s^2 + p^2 = k^2, and (Whittaker, Analytical Dynamics, 44)
@@ -47,8 +47,8 @@ def quarter_period(complement: float) -> float:
 def incomplete(sine: ArrayLike, cosine: ArrayLike, complement: float) -> Array:
     """F [1], the incomplete integral of the first kind, of the amplitude atan2(sine, cosine) in (-pi, pi].
 
-    The arguments are a sine and a cosine (with any common factor), since an amplitude near pi/2 has too few digits for
-    F if n is near 0. At n = 0 the cosine must be positive.
+    The amplitude is given by its sine and cosine, times a common factor, since an amplitude near pi/2 has too few
+    digits if n is near 0. At n = 0 the cosine must be positive.
     """
     sine, cosine = np.asarray(sine, dtype=float), np.asarray(cosine, dtype=float)
     size = np.hypot(sine, cosine)
@@ -113,9 +113,9 @@ class Pendulum(Valid):
     """The exact motion from any start.
 
     `frequency` f [rad/s] of small swings, `angle` [rad] and `rate` [rad/s] at t = 0. The error of the angle is a few
-    1e-16 (1 + f t), except near the separatrix. There the motion depends on 1 - k^2, which a rounded start determines
-    only to about 1e-16, so that the time of each passage of the top is uncertain by about 1e-16 / |1 - k^2| / f for any
-    method. A start at rest has no such error: 1 - k^2 is then cos(angle/2)^2.
+    1e-16 (1 + f t), except near the separatrix. Near the separatrix the motion depends on 1 - k^2, which a rounded
+    start determines only to about 1e-16. So the time of each passage of the top is uncertain by about 1e-16 / |1 - k^2|
+    / f for any method. A start at rest has no such error, since 1 - k^2 is then cos(angle/2)^2.
     """
 
     frequency: Positive
@@ -124,7 +124,8 @@ class Pendulum(Valid):
 
     @cached_property
     def _start(self) -> tuple[float, float, float, float, float]:
-        """(direction, whole turns, s, c, p) for a positive rate: |p|, and s and c of the angle without whole turns."""
+        """(direction, whole turns, s, c, p) of the motion with a positive rate; s and c are of the angle without whole
+        turns."""
         direction = -1.0 if self.rate < 0 else 1.0
         rest = math.remainder(self.angle, 2 * math.pi)
         turns = round((self.angle - rest) / (2 * math.pi))
@@ -133,7 +134,8 @@ class Pendulum(Valid):
 
     @cached_property
     def excess(self) -> float:
-        """k^2 - 1 = (p - c)(p + c) [1]: negative if it swings, positive if it whirls, zero on the separatrix."""
+        """k^2 - 1 = (p - c)(p + c) [1], which is negative for swinging, positive for whirling and zero on the
+        separatrix."""
         _, _, _, cosine, p = self._start
         return (p - cosine) * (p + cosine)
 
@@ -150,7 +152,7 @@ class Pendulum(Valid):
 
     @cached_property
     def _elliptic(self) -> tuple[float, float, float]:
-        """(speed of the argument [1/s], its start c, complementary parameter)."""
+        """(rate of the elliptic functions' argument [1/s], argument at t = 0, complementary parameter n)."""
         _, _, sine, cosine, p = self._start
         if self.excess > 0:
             complement = self.excess / self.modulus**2
