@@ -27,6 +27,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material
 from reports.model.tasks import Answer, Motion, trajectory_of
 from reports.pages import claims, common
+from reports.pages.at_a_glance import glance_table, sentences
 from reports.pages.centrodes import page as centrodes
 from reports.pages.engines.page import (
     ELEMENT_EXAMPLES,
@@ -38,6 +39,7 @@ from reports.pages.engines.page import (
     reason_key,
     refusals_of,
 )
+from reports.pages.engines.page import PAGE as ENGINES_PAGE
 from reports.pages.four_bar import page as four_bar
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.rolling import page as rolling
@@ -281,3 +283,17 @@ def test_a_release_that_lacks_a_function_of_the_adapter_is_too_old(monkeypatch):
     monkeypatch.setattr(type(engine), "build", old)
     answers = Capabilities(engine).run()
     assert (answers["spring"], answers["hinge"]) == (TOO_OLD, "yes")
+
+
+def test_the_table_at_a_glance_has_a_row_and_a_sentence_for_each_engine_and_an_empty_table_without_answers():
+    answers = {
+        task: Answer(
+            Outcome.FINISHED, values={**dict.fromkeys(ELEMENT_EXAMPLES, "yes"), "reactions": "yes", "width": "64"}
+        )
+        for task in MATRIX
+    }
+    page, scenes = ENGINES_PAGE, {"free_four_bar": "four-bar"}
+    table = glance_table({page: Material({}, answers)}, [], scenes).splitlines()
+    names = {engine.name for engine in (*registry.VARIANTS, *registry.OTHERS)}
+    assert {line.split("|")[1].strip() for line in table[2:]} == names == {*sentences()["engines"]}
+    assert glance_table({page: Material({})}, [], scenes) == ""
