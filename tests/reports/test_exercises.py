@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from reference.chapter.errata import velocities
+from reference.chapter.skates import commutator_displacement, sidestep
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.site.lesson import exercise_of
 from reports.site.lessons import LESSONS
@@ -41,6 +42,9 @@ def answers(tmp_path_factory):
 EXPECTED = {
     "tip_speed": float(np.hypot(*velocities(1.0, (math.pi / 6, math.pi / 3), (2.0, -1.0)).b)),
     "freedoms_with_handle": 3.0,
+    "commutator_aside": float(commutator_displacement(math.radians(20), 0.5)[1]),
+    "sidestep_turn": math.degrees(sidestep(0.4, 0.5, math.pi / 6)[0].turn),
+    "velocity_from_row": (math.sin(math.pi / 6) + 2 * 0.3) / math.cos(math.pi / 6),
     "rocker_rate": float(DrivenFourBar().four_bar.rates(0.0, 10.0)[1]),
 }
 

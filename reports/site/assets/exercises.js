@@ -3,9 +3,12 @@
 
 import { freedoms, rates } from "./exact.js";
 import { placed } from "./motion.js";
+import { commutator, moved, sidestep } from "./parking.js";
 
 /** @typedef {import("./motion.js").Point} Point */
 
+/** @type {[number, number, number]} */
+const START = [0, 0, 0];
 const CLOSE = 0.01; // largest relative difference of an answer
 
 /** Return a linkage of thin bars between named points: the bar "AB" is from A to B, and the points in `fixed` are pinned to
@@ -72,6 +75,14 @@ export const ANSWERS = {
     return Math.hypot(turning[3] - turning[5] * y, turning[4] + turning[5] * x);
   },
   freedoms_with_handle: () => freedoms(linkage(STANDING, [...PERSON, "SL", "LG"], "AEG")),
+  commutator_aside: () => commutator(rad(20), 0.5).reduce(moved, START)[1],
+  sidestep_turn: () => (sidestep(0.4, 0.5)[0].turn * 180) / Math.PI,
+  velocity_from_row: () => {
+    // The velocity at O' of a skate with this forward speed at C; the speed follows from the given x velocity.
+    const [angle, turning, arm] = [rad(30), 2, 0.3];
+    const speed = (1 + turning * arm * Math.sin(angle)) / Math.cos(angle);
+    return speed * Math.sin(angle) + turning * arm * Math.cos(angle);
+  },
   rocker_rate: () => rates(fourBar(0), [[-1, 0, 10]])[8],
 };
 

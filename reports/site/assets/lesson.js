@@ -179,6 +179,11 @@ async function guessed(part, button) {
   }
   const measured = /** @type {HTMLElement} */ (part.querySelector(".measured"));
   const why = /** @type {HTMLDetailsElement} */ (part.querySelector(".why"));
+  const right = button.dataset.right !== undefined ? "Right." : "Not so.";
+  if (part.dataset.after === "{}") {
+    [why.open, measured.textContent] = [true, right]; // the question is not about an engine
+    return;
+  }
   load();
   stageOf(part, "before", false);
   const before = await ask({ setting: form.setting(null) }).catch(failed);

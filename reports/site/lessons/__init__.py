@@ -6,9 +6,9 @@ from reports.site.animated import Take
 from reports.site.lessons.chains import CHAINS
 from reports.site.lessons.linkages import CENTRODES, FOUR_BAR, PENDULUM, SLIDER_CRANK
 from reports.site.lessons.rolling import GEARS, ROLLING
-from reports.site.lessons.skates import SKATE, WHEELS
+from reports.site.lessons.skates import PARKING, SKATE, WHEELS
 
-LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, WHEELS, ROLLING, GEARS, CENTRODES)
+LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, PARKING, WHEELS, ROLLING, GEARS, CENTRODES)
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:

@@ -58,6 +58,19 @@ SKATE = Lesson(
     ),
 )
 
+PARKING = Lesson(
+    "parking",
+    "Parallel parking",
+    "skate",
+    SKATE.scenes,
+    (
+        Experiment("the sleigh", BOTH, section="Degrees of freedom"),
+        Experiment("the sleigh", BOTH, section="The only one, and no factor of 2"),
+        Experiment("the sleigh", BOTH, widget="parking"),
+        Experiment("the sleigh", BOTH, {"munk": NAIVE}, (Claim("munk", least=100),)),
+    ),
+)
+
 CAR = CarAndTrailer()
 REVERSING = CarAndTrailer(steering=0.0, hitch=0.0, speed=-1.0, bend=0.05)
 STEPS = (25, 125, 250, 500, 1250, 2500, 5000)
