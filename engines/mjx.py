@@ -29,6 +29,8 @@ from __future__ import annotations
 import math
 import os
 import platform
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, ClassVar
@@ -44,12 +46,13 @@ from engines.contract import (
     NotDeclared,
     Unsupported,
 )
+from engines.device import chosen_device
 from engines.mujoco import declared
 from engines.mujoco.methods import TUNED as C_TUNED
 from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.releases import full_inertia
 from engines.mujoco.running import MAX_RESIDUAL, residual_warning
-from engines.on_device import MuJoCoOnDevice, chosen_device, size_of, without_contacts
+from engines.on_device import MuJoCoOnDevice, size_of, without_contacts
 from engines.sampling import sampled
 from engines.single_run import Recorded, quiet
 from engines.tree import Tree, spanning_tree
@@ -226,6 +229,34 @@ def _solver_residual(model: MuJoCoModel, data: Any, answer: Any) -> float:
         return float(np.abs(np.linalg.solve(inertia + (rows.T * hard) @ rows, left)).max() / max(size, 1e-300))
     except np.linalg.LinAlgError:
         return math.inf
+
+
+def run_worlds(engine: Mjx, mechanisms: Sequence[Mechanism], dt: float, steps: int) -> tuple[Array, float]:
+    """As `engines.mujoco_warp.run_worlds`, by `jax.vmap` over the fields that differ."""
+    import jax
+    import jax.numpy as jnp
+
+    models = [engine.compiled(mechanism, dt) for mechanism in mechanisms]
+    (mjx, several, _), one = _programs(), DeviceModel(models[0])
+    changed = {}
+    for name, value in vars(one._held).items():
+        if isinstance(value, jax.Array) and hasattr(models[0].compiled, name):
+            values = np.stack([np.asarray(getattr(model.compiled, name)) for model in models])
+            if np.any(values != values[0]):
+                changed[name] = jnp.asarray(values.reshape(len(models), *value.shape), dtype=value.dtype)
+    data = mjx.put_data(models[0].compiled, one._data)
+
+    def run(world: dict[str, Any], velocity: Any) -> Any:
+        held = one._held.replace(**world)
+        return several(held, data.replace(qvel=velocity), steps).qpos
+
+    rates = jnp.asarray(np.stack([model.start().qvel for model in models]))
+    program = jax.jit(jax.vmap(run)).lower(changed, rates).compile()
+    begin = time.perf_counter()
+    place = np.asarray(program(changed, rates))
+    elapsed, rest = time.perf_counter() - begin, np.zeros(models[0].compiled.nq)
+    poses = [model.tree.instant(at[model.address], rest)[0] for model, at in zip(models, place, strict=True)]
+    return np.array(poses), elapsed
 
 
 DEFAULT = Mjx("default")

@@ -23,6 +23,8 @@ Warp compiles kernels when they are first used, which takes a minute or two on a
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, ClassVar
@@ -32,9 +34,9 @@ from numpy.typing import NDArray
 
 from engines.capability import Capability, Lack
 from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
+from engines.device import chosen_device
 from engines.motions import over_three
 from engines.mujoco_warp import load_warp
-from engines.on_device import chosen_device
 from engines.sampling import sampled_with_differences, unwrapped
 from engines.single_run import ExtraEngine, Recorded, quiet
 from engines.tree import with_parents
@@ -124,7 +126,7 @@ class NewtonModel:
         self.engine, self.mechanism, self.dt, self.device = engine, mechanism, dt, chosen_device()
         self.warp, self.newton = load_newton(self.device)
         with quiet(), self.warp.ScopedDevice(self.device):
-            self.model = self._described()
+            self.model = self._finalized([self.builder()])
             self.solver, self.control = self._solver(), self.model.control()
         bodies = len(mechanism.bodies)
         rows = sum(5 if isinstance(joint, Pin) else 6 for joint in mechanism.joints)
@@ -134,21 +136,34 @@ class NewtonModel:
         warp = self.warp
         return warp.transform(warp.vec3(x, y, 0.0), warp.quat_from_axis_angle(warp.vec3(0.0, 0.0, 1.0), angle))
 
-    def _described(self) -> Any:
-        """Newton's model of the mechanism."""
-        warp, gravity = self.warp, (*self.mechanism.gravity, 0.0)
+    def _finalized(self, builders: Sequence[Any]) -> Any:
+        """Newton's model of one world, or of several."""
+        whole = builders[0]
+        if len(builders) > 1:
+            whole = self._new_builder()
+            for builder in builders:
+                whole.add_world(builder)
+        model = whole.finalize(device=self.device)
+        model.rigid_contact_max = len(builders)  # one for each world; with None, Kamino makes room for 1000
+        return model
+
+    def _new_builder(self) -> Any:
+        gravity = (*self.mechanism.gravity, 0.0)
         builder = self.newton.ModelBuilder(up_axis=self.newton.Axis.Y, gravity=gravity)
         if self.engine.solver == "kamino":
             self.newton.solvers.SolverKamino.register_custom_attributes(builder)
+        return builder
+
+    def builder(self) -> Any:
+        """Newton's builder with the mechanism."""
+        builder = self._new_builder()
         for body in self.mechanism.bodies:
             inertia = [value for row in np.diag([body.inertia] * 3).tolist() for value in row]
             x, y, angle = map(float, body.pose)
             frame = self._transform(x, y, angle)
-            builder.add_link(xform=frame, mass=float(body.mass), inertia=warp.mat33(*inertia))
+            builder.add_link(xform=frame, mass=float(body.mass), inertia=self.warp.mat33(*inertia))
         self._add_joints(builder)
-        model = builder.finalize(device=self.device)
-        model.rigid_contact_max = 1  # with None, Kamino makes room for 1000
-        return model
+        return builder
 
     def _add_joints(self, builder: Any) -> None:
         """Add the joints of trees, of which Newton makes articulations, and then those that close loops."""
@@ -250,6 +265,29 @@ class NewtonModel:
         pushed = np.zeros((len(pose), 6), dtype=np.float32)
         pushed[:, [0, 1, 5]] = self.mechanism.applied.on(pose, twist)
         return pushed
+
+
+def run_worlds(engine: Newton, mechanisms: Sequence[Mechanism], dt: float, steps: int) -> tuple[Array, float]:
+    """As `engines.mujoco_warp.run_worlds`; the mechanisms start at rest, and `steps` is even."""
+    models = [NewtonModel(engine, mechanism, dt) for mechanism in mechanisms]
+    first = models[0]
+    warp = first.warp
+    with quiet(), warp.ScopedDevice(first.device):
+        first.model = first._finalized([model.builder() for model in models])
+        solver = first._solver()
+        now, then, control = first.model.state(), first.model.state(), first.model.control()
+        solver.step(first.model.state(), first.model.state(), control, None, dt)  # compiles or loads the kernels
+        solver = first._solver()
+        with warp.ScopedCapture() as capture:
+            solver.step(now, then, control, None, dt)
+            solver.step(then, now, control, None, dt)
+        begin = time.perf_counter()
+        for _ in range(steps // 2):
+            warp.capture_launch(capture.graph)
+        warp.synchronize()
+        elapsed = time.perf_counter() - begin
+        pose = first._state(now)[0]
+    return pose.reshape(len(models), -1, 3), elapsed
 
 
 DEFAULT = Newton("default")

@@ -7,9 +7,8 @@ too, since these adapters build no contact.
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, cast
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,17 +26,6 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
-Device = Literal["cpu", "cuda"]
-# The environment variable that chooses the device of these engines: `crosscheck run --device` sets it.
-DEVICE = "CROSSCHECK_DEVICE"
-
-
-def chosen_device() -> Device:
-    """The device on which these engines run; raises Unsupported for an unknown one."""
-    device = os.environ.get(DEVICE, "cpu")
-    if device not in ("cpu", "cuda"):
-        raise Unsupported(f"the environment variable {DEVICE} is {device!r}; it must be 'cpu' or 'cuda'")
-    return cast(Device, device)
 
 
 def without_contacts(engine: str, title: str) -> Capability:

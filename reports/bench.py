@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from engines import Engine, Unsupported, method_name
+from engines import Engine, Unsupported, method_name, registry
 from engines.lagrange import Lagrange
 from engines.lagrange.compiled_model import CompiledModel
 from engines.loading import Kind, registered_by_key
@@ -52,6 +52,24 @@ STEPPED = """async ([scene, step, turns]) => {
 }"""
 
 Row = tuple[str, float, str]  # name, value, unit
+WORLDS = Kind("program of many worlds", lambda value: "" if callable(value) else "it can't be called")
+WORLD_COUNTS = (1, 64, 4096)
+WORLD_STEP, WORLD_STEPS = 1e-3, 200  # [s]
+WORLDS_COMPARED = 16  # with the judge, of many
+WORLDS_LIMIT = 120.0  # s: a method that would take longer, by its speed with fewer worlds, is left out
+
+
+@dataclass(frozen=True)
+class WorldsCost:
+    """Steps of one world per second, and the largest angle error [rad] at the end.
+
+    The second is one of elapsed time, or of CPU time for the judge.
+    """
+
+    method: str
+    worlds: int
+    steps_per_second: float
+    error: float
 
 
 @dataclass(frozen=True)
@@ -126,6 +144,31 @@ def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -
         seconds = _least(lambda chain=chain: Lagrange("rk4").build(chain, 1e-4)(1, 50).stepping, turns) / 50
         rows.append((f"chain of {count} links: a step by rk4 projection", 1e3 * seconds, "ms"))
     return rows
+
+
+def measure_worlds(counts: Sequence[int] = WORLD_COUNTS, steps: int = WORLD_STEPS) -> list[WorldsCost]:
+    """Worlds per second and errors of engines that step many worlds in one program (entry points `crosscheck.worlds`).
+
+    Each world is a free four-bar with a coupler of its own length. The judge steps them one after another.
+    """
+    results = []
+    programs = registered_by_key("crosscheck.worlds", WORLDS)
+    for count in counts:
+        couplers = np.linspace(1.0, 1.05, count) * FreeFourBar().coupler
+        mechanisms = [FreeFourBar(coupler=float(coupler)).mechanism() for coupler in couplers]
+        compared = range(0, count, max(1, count // WORLDS_COMPARED))
+        judge = Lagrange("rk4")
+        runs = [judge.build(mechanism, WORLD_STEP)(1, steps) for mechanism in mechanisms]
+        truth = np.array([runs[world].pose[-1] for world in compared])
+        elapsed = sum(run.stepping for run in runs)
+        results.append(WorldsCost(method_name(judge), count, count * steps / elapsed, 0.0))
+        for engine in registry.INSTALLED:
+            before = [cost.steps_per_second for cost in results if cost.method == method_name(engine)]
+            if engine.name in programs and not (before and count * steps > WORLDS_LIMIT * before[-1]):
+                poses, elapsed = programs[engine.name](engine, mechanisms, WORLD_STEP, steps)
+                error = float(np.abs(poses[list(compared)] - truth)[..., 2].max())
+                results.append(WorldsCost(method_name(engine), count, count * steps / elapsed, error))
+    return results
 
 
 def measure_truths(scenes: Iterable[Scene]) -> list[Row]:

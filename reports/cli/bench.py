@@ -12,17 +12,20 @@ from engines import method_name
 from engines.registry import ENGINES
 from reports.bench import (
     COMMAND_TURNS,
+    WORLD_COUNTS,
     measure_command,
     measure_grid,
     measure_judge,
     measure_loops,
     measure_site,
     measure_truths,
+    measure_worlds,
 )
 from reports.cli.known import choose
-from reports.cli.options import SITE, Scenes
+from reports.cli.options import SITE, DeviceName, Scenes, choose_device
 from reports.cli.selection import choose_cells
 from reports.cli.terminal import Terminal, print_table
+from reports.model.ending import BadInput
 from reports.run.installed import installed
 from reports.versions.catalogue import distributions, engines_named
 from reports.write.provenance import machine, versions
@@ -37,17 +40,22 @@ def bench(
     scene: Scenes = None,
     full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid.")] = False,
     site: Annotated[Path, typer.Option(help="`site`: a folder that `crosscheck site` wrote.")] = SITE,
+    device: DeviceName = None,
 ) -> None:
     """Time `run` against bare loops; asserts nothing.
 
     `bench suite [SCENES]`: CPU time of a grid by part, method and scene. `bench judge`: CPU time of the judge and of
-    exact motions. `bench answers`: whole commands in new processes. `bench site`: sizes and times of the site.
+    exact motions. `bench worlds [COUNTS]`: steps per second and errors of 1, 64 and 4096 four-bars that engines step in
+    one program, on the device of `--device`. `bench answers`: whole commands in new processes. `bench site`: sizes and
+    times of the site.
     """
     match scene or []:
         case ["suite", *scenes]:
             _print_grid(scenes, full)
         case ["judge", *_]:
             _print_judge()
+        case ["worlds", *counts]:
+            _print_worlds(counts, device)
         case ["answers", *_]:
             _print_commands()
         case ["site", *_]:
@@ -96,6 +104,20 @@ def _print_judge() -> None:
     truths = measure_truths(scenes)  # first, since some motions are cached
     total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
     _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
+
+
+def _print_worlds(counts: Sequence[str], device: str | None) -> None:
+    """Print steps per second; the counts of worlds are those of the benchmark if none is given."""
+    choose_device(device)
+    try:
+        numbers = tuple(map(int, counts)) or WORLD_COUNTS
+    except ValueError:
+        raise BadInput(f"bench worlds: {' '.join(counts)!r} are no numbers of worlds, such as 1 64 4096") from None
+    body = [
+        (cost.method, str(cost.worlds), number(cost.steps_per_second), number(cost.error))
+        for cost in measure_worlds(numbers)
+    ]
+    _print("many worlds", ("method", "worlds", "steps of a world per second", "angle error [rad]"), body)
 
 
 def _print_commands() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from engines.device import DEVICE, DEVICES
 from reports.model.ending import BadInput, FileTrouble, nearest
 from reports.run.files import is_stream
 
@@ -42,6 +44,20 @@ Scheduler = Annotated[
     str | None,
     typer.Option("--scheduler", help="Run on a Dask cluster: tcp://HOST:PORT of its scheduler, or local:N workers."),
 ]
+
+
+DeviceName = Annotated[
+    str | None,
+    typer.Option("--device", help="cpu or cuda: where MJX, MuJoCo Warp and Newton run; other engines ignore it."),
+]
+
+
+def choose_device(device: str | None) -> None:
+    """Set the device of engines on a device for this process and its workers; raises BadInput for an unknown one."""
+    if device is not None:
+        if device not in DEVICES:
+            raise BadInput(f"--device {device}: it must be cpu or cuda")
+        os.environ[DEVICE] = device
 
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document, with all digits, instead of text.")]

@@ -20,6 +20,7 @@ from reports.cli.options import (
     STORE,
     AsJson,
     AsMarkdown,
+    DeviceName,
     EngineName,
     Every,
     Folder,
@@ -28,6 +29,7 @@ from reports.cli.options import (
     Settings,
     VariantName,
     Workers,
+    choose_device,
     with_folder,
 )
 from reports.cli.selection import choose_cells, choose_tasks, grid_engines, left_out
@@ -56,11 +58,13 @@ def run(
     limit: Annotated[float, typer.Option(help="CPU seconds after which a cell is ended.")] = TIME_LIMIT,
     workers: Workers = None,
     scheduler: Scheduler = None,
+    device: DeviceName = None,
     as_json: AsJson = False,
     as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
     """Run the cells that are not stored yet; what is done survives an interruption."""
+    choose_device(device)
     chosen = Selection(
         tuple(scene or ()), engine, variant, tuple(settings or ()), full, tuple(every or ()), tuple(step or ()), limit
     )

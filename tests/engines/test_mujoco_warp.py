@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engines import Unsupported, mujoco_warp
-from engines.on_device import DEVICE, chosen_device
+from engines.device import DEVICE, chosen_device
 from reference.scenes.catalogue import scene
 from tests.engines.test_promised import MECHANISMS, SAMPLES, installed, span
 

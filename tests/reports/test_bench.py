@@ -1,13 +1,16 @@
 """`crosscheck bench` measures the motions of the runs, and counts each part of the CPU time once."""
 
+import numpy as np
 import pytest
 
-from engines import mujoco, pymunk
-from engines.lagrange import loading
+from engines import mujoco, pymunk, registry
+from engines.lagrange import TRUTH, loading
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import SquareOnCatenaries
-from reports.bench import measure_command, measure_grid, measure_judge, measure_loops, measure_truths
+from reports import bench
+from reports.bench import measure_command, measure_grid, measure_judge, measure_loops, measure_truths, measure_worlds
+from reports.cli.bench import _print_worlds
 from reports.model.cells import Cell
 from reports.model.ending import BadInput
 from tests.toys import Disc, Toy
@@ -50,3 +53,27 @@ def test_exact_motions_are_sorted_by_cost_and_a_scene_without_one_is_left_out():
 def test_a_timed_command_reports_its_exit_status():
     assert measure_command(["--help"]).status == 0
     assert measure_command(["no such command"]).status == 2
+
+
+def test_a_program_of_many_worlds_is_compared_with_the_judge_and_left_out_where_it_takes_too_long(monkeypatch):
+    """The program of the toy turns the last of its worlds by 0.25 rad, and is slow."""
+
+    def run_worlds(engine, mechanisms, dt, steps):
+        poses = np.array([TRUTH.build(mechanism, dt)(1, steps).pose[-1] for mechanism in mechanisms])
+        poses[-1, 0, 2] += 0.25
+        return poses, 1e3 * len(mechanisms)
+
+    monkeypatch.setattr(bench, "registered_by_key", lambda group, kind: {"toy": run_worlds})
+    monkeypatch.setattr(registry, "INSTALLED", (Toy(),))
+    judge, found, *later = measure_worlds((2, 3), 10)
+    assert (judge.worlds, found.worlds) == (2, 2)
+    assert found.error == pytest.approx(0.25, abs=1e-6)
+    assert found.steps_per_second == pytest.approx(10 / 1e3)
+    assert [cost.method for cost in later] == [judge.method]
+
+
+def test_a_count_of_worlds_that_is_no_number_and_an_unknown_device_are_refused():
+    with pytest.raises(BadInput, match="'many' are no numbers of worlds"):
+        _print_worlds(["many"], None)
+    with pytest.raises(BadInput, match="--device abacus: it must be cpu or cuda"):
+        _print_worlds([], "abacus")
