@@ -1,1 +1,1 @@
-"""The data of the suite: cells, tasks, outcomes, quantities and rows; how rows are measured; the parts of a page."""
+"""The data of the suite, such as cells, tasks, outcomes, rows and pages, and the measurement of rows."""

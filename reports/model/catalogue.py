@@ -1,8 +1,8 @@
-"""The registered pages and scenes, and a generic page for each scene without one.
+"""The registered scenes and pages, and a generic page for each scene without a page.
 
-An entry point of the group `crosscheck.scenes` is a scene, or a tuple or list of scenes. One of `crosscheck.pages` is a
-page (`reports.model.page.Page`), or a tuple or list of pages; its scenes need not be registered. The entry points of
-this suite are in pyproject.toml, in the order of the pages.
+An entry point of the group `crosscheck.scenes` is a scene, or a tuple or list of scenes. An entry point of the group
+`crosscheck.pages` is a page (`reports.model.page.Page`), or a tuple or list of pages. The scenes of a page need not be
+registered. The entry points of this suite are in pyproject.toml, in the order of the pages.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from reference.checks import InvalidMechanism, validate
 from reference.scene import TIME_ANNOTATIONS, Scene
 from reports.model.page import Page
 
-LONGEST_NAME = 100  # characters of a page's name, which is also the name of files
+LONGEST_NAME = 100  # Largest number of characters in a page's name, which is also the name of files.
 INDEX = "index.md"
-NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")  # characters that names of files and links must not contain
+NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")  # Characters that must not be in the names of files and links.
 
 
 def _no_scene(value: Any) -> str:
-    """The reason why a value is not a valid scene, as a clause; empty if it is."""
+    """A clause with the reason why a value is not a valid scene. Empty if the scene is valid."""
     if isinstance(value, type):
         return f"it is a class; give a scene made of it, {value.__name__}()"
     if not isinstance(value, Scene):
@@ -36,9 +36,9 @@ def _no_scene(value: Any) -> str:
         word = getattr(value, name, None)
         if not (isinstance(word, str) and word.strip() and word.isprintable()):
             return f"its {name} is {word!r}; it must be a string that is not empty and can be printed"
-    if type(value).__module__.startswith("reference."):  # checked by tests; some integrate a motion for their horizon
+    if type(value).__module__.startswith("reference."):  # tests check these scenes
         return ""
-    try:  # its constructor has checked fields, but not values that properties compute
+    try:  # The constructor checks fields, but not values of properties.
         for name, annotation in TIME_ANNOTATIONS:
             validate(f"scene {value.name!r}", name, getattr(value, name, None), annotation)
     except InvalidMechanism as reason:
@@ -47,7 +47,7 @@ def _no_scene(value: Any) -> str:
 
 
 def _by_defaults(cls: type) -> Scene | None:
-    """A scene of this class with its default numbers, or None for a class that is no scene or has a required number."""
+    """A scene of this class with default parameters. None if the class is no scene or a parameter has no default."""
     if not (issubclass(cls, Scene) and is_dataclass(cls)) or inspect.isabstract(cls):
         return None
     if not isinstance(getattr(cls, "name", None), str):
@@ -63,12 +63,12 @@ _pages = registered("crosscheck.pages", PAGE, lambda page: page.name)
 
 
 def page_of(scene: Scene, pages: Sequence[Page] | None = None) -> Page | None:
-    """The page that teaches a scene, from `pages` or, if None, from PAGES, or None if there is none."""
+    """The page of a scene among `pages`, by default among PAGES. None if there is no such page."""
     return next((page for page in (PAGES if pages is None else pages) if page.teaches(scene)), None)
 
 
 def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:
-    """A page that shows all rows of a scene; the name of its document is not in `taken`."""
+    """A page that shows all rows of a scene. The name of its document is different from those in `taken`."""
     stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
     summary = " ".join((type(scene).__doc__ or "").split("\n\n")[0].split())
     page = Page(stem, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))
@@ -80,7 +80,7 @@ def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] =
 
 
 def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequence[Engine]) -> tuple[Page, ...]:
-    """The pages, and a generic page with these engines for each scene that none of them teaches."""
+    """The pages, and for each scene without a page a generic page with these engines."""
     out = list(pages)
     for scene in scenes:
         if page_of(scene, out) is None:
@@ -89,7 +89,7 @@ def with_scenes(pages: Sequence[Page], scenes: Iterable[Scene], engines: Sequenc
 
 
 def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page, ...]:
-    """The pages; those that compare engines are extended by these engines, also in charts."""
+    """Add the engines to all pages that compare engines, also to their charts."""
     added = {method_name(engine) for engine in engines}
 
     def extended(page: Page) -> Page:
@@ -104,7 +104,7 @@ def with_engines(pages: Iterable[Page], engines: Sequence[Engine]) -> tuple[Page
 
 
 def _without_doubles(pages: Iterable[Page]) -> tuple[tuple[Page, ...], tuple[str, ...]]:
-    """(pages without duplicate scenes or documents, a line about each page that is left out)."""
+    """(pages without duplicate scenes or documents, a message about each omitted page)."""
     accepted: list[Page] = []
     troubles: list[str] = []
     for page in pages:

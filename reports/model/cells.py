@@ -1,6 +1,6 @@
 """A cell is one scene in one engine variant at one step. This module also defines which cells are run.
 
-The steps of a sweep are half a decade apart; `usual_cells` have the steps that users choose.
+The steps of a sweep are half a decade apart. `usual_cells` have the steps that users choose.
 """
 
 from __future__ import annotations
@@ -19,50 +19,49 @@ from reports.model.fingerprint import LONG, digest, fingerprint
 
 Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map"]
 
-# Steps per sampling interval. With samples 1e-2 s apart the steps are about 1e-2, 3e-3, 1e-3 ... 3e-5 s. At least three
+# Steps per sampling interval. If samples are 1e-2 s apart, the steps are about 1e-2, 3e-3 and 1e-3 s. At least three
 # points are needed to distinguish a slope from a plateau.
 QUICK = (1, 3, 10)
 FULL = (1, 3, 10, 30, 100, 300)
 
-# The largest estimated CPU time [s] of a cell of a sweep, except for the coarsest step. The estimate is not a
-# measurement, so that the grid and errors.csv are the same on every machine.
+# The largest estimated CPU time [s] of a cell in a sweep, except at the coarsest step. It is an estimate and not a
+# measurement, so the grid and errors.csv are the same on every machine.
 COST_LIMIT = 0.8
-# A step finer than those of QUICK is left out if the declared order has already divided the error by this factor at a
-# coarser step, since the remaining error is rounding. So methods of order 4 have five steps, of order 6 or more three.
+# If a finer step would divide the error by more than this factor, the error is only rounding. So steps finer than QUICK
+# are left out for methods of high order. Methods of order 4 have five steps.
 DIVIDED = 1e8
-BESIDE_LIMIT = 0.5  # s; longest cell of an engine that is an extra.
-SLOW_TO_BUILD = 1.0  # s; an engine that needs longer to build a model runs only in experiments of pages.
+BESIDE_LIMIT = 0.5  # Longest estimated CPU time of a cell with an extra engine [s].
+SLOW_TO_BUILD = 1.0  # An engine that needs more time [s] to build a model runs only in experiments of pages.
 
-# Printed form -> step [s]: a frame of a screen, as in pymunk's examples; MuJoCo's default; half of this default.
+# Printed form -> step [s]. The steps are a frame of a screen, MuJoCo's default, and half of MuJoCo's default.
 USUAL_STEPS = {"1/60 s": 1 / 60, "2 ms": 2e-3, "1 ms": 1e-3}
 # Steps with a smaller relative difference count as equal, since the duration of a scene is a whole number of steps. At
-# order 4 the error then differs by at most 4 %.
+# order 4 the errors of such steps differ by at most 4 %.
 SAME_STEP = 0.01
-# Variants in the overview and in charts: an engine's defaults, its documented settings, and with code of this suite;
-# ideal constraints at order 1 and 4.
+# Variants that are shown in the overview and in charts.
 FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
-MOST_VARIANTS = 3  # In the overview and in charts, for an engine without a variant in FEATURED.
-# Printed form of a step -> the engine whose users choose it; engines with another such step do not run it.
+MOST_VARIANTS = 3  # Number of variants that are shown for an engine without a variant in FEATURED.
+# Printed form of a step -> the engine whose users choose this step. Other engines in this table do not run it.
 HABITS = {"1/60 s": "pymunk", "2 ms": "mujoco"}
 OWN_VARIANTS = (
     "extended",
     "euler projection",
     "rk4 projection",
-)  # with code of this suite, so that no user chooses a step
+)  # Variants with code of this suite have no users who choose a step.
 
 
 @dataclass(frozen=True)
 class Cell(Valid):
-    """A scene in an engine at one step. Raises ValueError unless both counts are positive integers.
+    """A scene in an engine at one step. Raises ValueError unless `every` and `samples` are positive integers.
 
-    Cells that differ only in `purpose` are equal, so that an experiment at a step of the sweep uses the sweep's row.
+    Cells that differ only in `purpose` are equal. So an experiment at a step of the sweep uses the row of the sweep.
     """
 
     scene: Scene
     engine: Engine
-    every: Count  # steps between two samples
+    every: Count  # Number of steps between two samples.
     purpose: Purpose = field(default="sweep", compare=False)
-    samples: Count | None = None  # number of sampling intervals; that of the scene if None
+    samples: Count | None = None  # Number of sampling intervals, by default that of the scene.
 
     @property
     def sample_count(self) -> int:
@@ -78,7 +77,7 @@ class Cell(Valid):
 
     @cached_property
     def key(self) -> str:
-        """A digest of everything on which the result depends: a stored result with the same key is valid."""
+        """A digest of everything that affects the result. A stored result with the same key is valid."""
         parts = (
             self.scene.name,
             repr(self.scene),
@@ -94,18 +93,18 @@ class Cell(Valid):
 
     @cached_property
     def truth(self) -> str:
-        """A digest of everything on which the exact motion depends, except the instants (`measure.exact_motion`)."""
+        """A digest of everything that affects the exact motion, except the instants (`measure.exact_motion`)."""
         sources = fingerprint(self.scene, folders=("reference",))
         parts = (self.scene.name, type(self.scene).__qualname__, repr(self.scene), sources)
         return digest("\0".join(parts), LONG)
 
 
-_fingerprint = lru_cache(maxsize=4096)(fingerprint)  # shared by the cells of a scene in an engine at all steps
+_fingerprint = lru_cache(maxsize=4096)(fingerprint)  # The cells of a scene in an engine share it.
 
 
 def estimated_cost(cell: Cell) -> float:
-    """Estimated CPU time of one run [s] by the engine's formula, which does not depend on the machine."""
-    # Rounded to a nanosecond, so that rounding does not decide whether a cell exceeds a limit.
+    """CPU time of one run [s], estimated by the engine's formula. It does not depend on the machine."""
+    # The time is rounded to a nanosecond, so that rounding errors do not decide whether a cell exceeds a limit.
     return round(cell.sample_count * cell.every * _step_cost(cell.scene, cell.engine), 9)
 
 
@@ -125,13 +124,13 @@ def _step_cost(scene: Scene, engine: Engine) -> float:
 def _call(engine: Engine, method: str, scene: Scene, convert: Callable[[Any], Any] = lambda value: value) -> Any:
     try:
         return convert(getattr(engine, method)(mechanism_of(scene)))
-    except Exception as error:  # any exception of a third party's engine
+    except Exception as error:  # An engine of a third party may raise any exception.
         raise BadInput(f"{method_name(engine)}: {method} of {scene.name}: {describe(error)}") from error
 
 
 @lru_cache(maxsize=512)
 def mechanism_of(scene: Scene) -> Mechanism:
-    """The scene's mechanism, cached, since cells, tables and pictures need it hundreds of times."""
+    """The mechanism of a scene. It is cached, since it is needed hundreds of times."""
     return scene.mechanism()
 
 
@@ -144,7 +143,7 @@ def sweep_cells(
 ) -> tuple[Cell, ...]:
     """The cells of all scenes in all engines at these numbers of steps per sample, coarse steps first.
 
-    The coarsest step is always included. The other cells are left out for the reasons of `too_much`.
+    The cells with the coarsest step are always included. `too_much` gives reasons why other cells are left out.
     """
     engines, scenes, steps = tuple(engines), tuple(scenes), sorted(steps)
     cells = [Cell(scene, engine, every) for every in steps for scene in scenes for engine in engines]
@@ -152,9 +151,9 @@ def sweep_cells(
 
 
 def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False) -> tuple[Cell, ...]:
-    """Cells of engines outside the grid at QUICK steps that take at most BESIDE_LIMIT: all with `sweep`, else one.
+    """Cells of engines outside the grid at the steps in QUICK. Cells that take longer than BESIDE_LIMIT are left out.
 
-    Without `sweep` only the finest such step is run.
+    Without `sweep` only the finest step remains.
     """
     engines = tuple(engine for engine in engines if engine.build_time < SLOW_TO_BUILD)
     out: list[Cell] = []
@@ -167,7 +166,7 @@ def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool
 
 
 def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDED) -> str:
-    """The reason why a sweep leaves out a step that is not its coarsest; empty if it is run."""
+    """The reason why a sweep leaves out this cell, or empty. It does not apply to the coarsest step."""
     cost = estimated_cost(cell)
     most = max(cost_limit, COST_LIMIT) if cell.every <= max(QUICK) else cost_limit
     if cost > most:
@@ -188,7 +187,7 @@ def is_step(step: float, wanted: float) -> bool:
 
 
 def usual_variants(methods: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
-    """Engine -> its variants in FEATURED in that order, or its first MOST_VARIANTS; `methods` are (engine, variant)."""
+    """Engine -> the variants in FEATURED in that order, else its first MOST_VARIANTS. methods: (engine, variant)."""
     variants: dict[str, dict[str, None]] = {}
     for engine, variant in methods:
         variants.setdefault(engine, {})[variant] = None
@@ -199,14 +198,14 @@ def usual_variants(methods: Iterable[tuple[str, str]]) -> dict[str, tuple[str, .
 
 
 def is_run_at(name: str, engine: str, variant: str) -> bool:
-    """Whether a method is run at the step of USUAL_STEPS with this printed form."""
+    """Whether a method is run at a step of USUAL_STEPS. name: printed form of the step."""
     if name not in HABITS:
         return True
     return variant not in OWN_VARIANTS and (HABITS[name] == engine or engine not in HABITS.values())
 
 
 def usual_cells(scenes: Iterable[Scene], engines: Iterable[Engine]) -> tuple[Cell, ...]:
-    """The usual variants of the engines at USUAL_STEPS, without steps of the sweep and without long runs."""
+    """The cells of usual variants at USUAL_STEPS, without steps of the sweep and without long runs."""
     engines = tuple(engines)
     usual = usual_variants((engine.name, engine.variant) for engine in engines)
     chosen = [engine for engine in engines if engine.variant in usual[engine.name]]
@@ -218,7 +217,7 @@ def _cells(scene: Scene, engine: Engine) -> Iterator[Cell]:
         if not is_run_at(name, engine.name, engine.variant):
             continue
         every = max(1, round(scene.spacing / step))
-        if not is_step(scene.spacing / every, step):  # the step does not divide the sampling, so the sampling changes
+        if not is_step(scene.spacing / every, step):  # The step does not divide the sampling interval.
             cell = Cell(scene, engine, every, "usual", samples=max(1, round(scene.duration / (every * step))))
         elif every not in FULL:
             cell = Cell(scene, engine, every, "usual")

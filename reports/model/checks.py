@@ -1,4 +1,4 @@
-"""A check compares a measured number with a bound. The gates of the grid produce checks, and reports print them."""
+"""A check compares a measured number with a bound. The gates produce checks, and reports print them."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
 
 CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
-CHANGE = "change"  # the check against a baseline, which no known deviation excuses
+CHANGE = "change"  # The check against a baseline. No known deviation excuses its failure.
 BEGINNINGS = ("upstream:", "by design:", "ours:")
-WORSE_DEVIATION = 2.0  # Times the known deviation; a larger one fails.
-BACK = 0.5  # Of the bound; a known deviation below this value no longer occurs, which fails too.
-ROUNDED = 10.0  # Times the known deviation, if it consists of amplified rounding; another processor gave 2 and 1/17.
+WORSE_DEVIATION = 2.0  # A deviation fails if it exceeds the known deviation by this factor.
+BACK = 0.5  # A known deviation below this share of the bound no longer occurs. This fails too.
+ROUNDED = 10.0  # The factor for amplified rounding. Another processor changed such deviations by 2 and by 1/17.
 
 
 @dataclass(frozen=True)
 class Check:
-    """The assertion that `measured` does not exceed `bound`."""
+    """A comparison of a measured value with a bound. The check fails if the value exceeds the bound."""
 
-    name: str  # One of CHECKS, or "change"
-    quantity: str  # The field of the Measurement.
+    name: str  # One of CHECKS, or "change".
+    quantity: str  # A field of Measurement.
     measured: float
     bound: float
-    terms: tuple[tuple[str, float], ...] = ()  # (name, summand of the bound)
+    terms: tuple[tuple[str, float], ...] = ()  # (name, summand of the bound).
     sentence: str = ""
 
     @property
     def nearness(self) -> float:
-        """measured / bound, which is above 1 if the check fails; infinite if `measured` is not finite."""
+        """The ratio measured / bound. It is infinite if `measured` is not finite. The check fails above 1."""
         if not math.isfinite(self.measured):
             return math.inf
         return self.measured / self.bound if self.bound > 0 else (math.inf if self.measured > 0 else 0.0)
@@ -47,12 +47,12 @@ class Check:
 
 @dataclass(frozen=True)
 class Deviation:
-    """A check that a method is known to fail, with either a factor or an outcome. Raises ValueError."""
+    """A known failure of a check, with either a factor or an outcome. Raises ValueError."""
 
-    reason: str  # Begins with "upstream:", "by design:" or "ours:"
-    factor: float | None = None  # Largest measured / bound.
+    reason: str  # It begins with "upstream:", "by design:" or "ours:".
+    factor: float | None = None  # Largest ratio measured / bound.
     outcome: Outcome | None = None  # The known outcome.
-    rounding: bool = False  # The error is amplified rounding, so that it may differ by ROUNDED on another processor.
+    rounding: bool = False  # Whether the error is amplified rounding, which depends on the processor.
 
     def __post_init__(self) -> None:
         if not self.reason.startswith(BEGINNINGS):
@@ -66,7 +66,7 @@ class Deviation:
 
     @property
     def told(self) -> str:
-        """The known deviation as text for a table: its factor, such as '2.5', or its outcome, such as 'torn'."""
+        """Text for a table: the factor, such as '2.5', or the outcome, such as 'torn'."""
         return f"{self.factor:.4g}" if self.outcome is None else self.outcome
 
 
@@ -76,9 +76,9 @@ def nearest(checks: Iterable[Check]) -> Check:
 
 
 def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome: str = "") -> tuple[str, ...]:
-    """Sentences about unexpected failures, and about known deviations that became larger or no longer occur.
+    """Sentences about unexpected failures, and about known deviations that have grown or no longer occur.
 
-    `outcome`: that of the checked run, which must be the known outcome of a deviation.
+    outcome: outcome of the checked run. It must be the known outcome of a deviation.
     """
     out: list[str] = []
     checks = tuple(checks)

@@ -1,4 +1,4 @@
-"""The observed order (discretisation) and the plateau (the model) of a sweep over steps."""
+"""The observed order and the plateau of the errors in a sweep over steps."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, Quantity
 
-ROOM_SOFT = 2.0  # Times the error of the declared softness: the accuracy of its estimate of a row's inertia.
-FLAT = 0.35  # A smaller local slope is no convergence: half a decade of steps reduces the error by less than 1.5.
-ENOUGH_POINTS = 3  # Fewest points for an order; two points give a slope but no check of it.
-ROUNDING_GROWTH = 100.0  # Rounding may grow by this factor at finer steps, as the number of steps does.
+ROOM_SOFT = 2.0  # Safety factor on the error of the declared softness, which depends on an estimated inertia.
+FLAT = 0.35  # A smaller slope is no convergence, since half a decade of steps reduces the error by less than 1.5.
+ENOUGH_POINTS = 3  # Fewest points for an order. Two points determine a slope but do not verify it.
+ROUNDING_GROWTH = 100.0  # Rounding errors may grow by this factor at finer steps, which need more steps.
 NEAR_PLATEAU = 3.0  # An error within this factor of the plateau is not used for the order.
 POWERS = (0.5, 8.0)  # Smallest and largest power of the step with which an error may approach its limit.
 
@@ -37,16 +37,16 @@ class Verdict(StrEnum):
 
 class Fit(NamedTuple):
     verdict: Verdict
-    order: float = NAN  # Slope of log error over log step on the falling part.
-    points: int = 0  # Of the falling part.
-    spread: float = NAN  # Largest difference of a local slope from the order.
-    plateau: float = NAN  # Limit of the error at a step of zero, in the error's unit.
-    uncertainty: float = NAN  # Of that limit.
+    order: float = NAN  # Slope of log error over log step in the falling part.
+    points: int = 0  # Number of points in the falling part.
+    spread: float = NAN  # Largest difference between a local slope and the order.
+    plateau: float = NAN  # Limit of the error for step zero, in the unit of the error.
+    uncertainty: float = NAN  # Uncertainty of the plateau.
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """The behaviour (`Fit`) of a quantity of a scene in an engine variant over all comparable steps."""
+    """The `Fit` of a quantity over all comparable steps of an engine variant in a scene."""
 
     scene: str
     engine: str
@@ -67,7 +67,7 @@ class Sweep:
 
     @property
     def lucky(self) -> bool:
-        """Whether the smallest error is far below the plateau, since two errors cancel at that step."""
+        """Whether the smallest error is far below the plateau. Then two errors cancel at that step."""
         return self.verdict is Verdict.PLATEAU and self.best < self.plateau / 2
 
 
@@ -76,18 +76,18 @@ def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
 
 
 def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit:
-    """The behaviour of these errors as the step [s] goes to zero. Errors that are not finite are left out.
+    """Determine how errors depend on the step [s]. Errors that are not finite are left out.
 
-    An error at or below `rounding` counts as rounding.
+    An error of at most `rounding` counts as rounding.
     """
     return _fit(
         tuple(sorted(((h, e) for h, e in zip(steps, errors, strict=True) if math.isfinite(e)), reverse=True)), rounding
     )
 
 
-@lru_cache(maxsize=32768)  # a page, the index and the readme need the same sweep
+@lru_cache(maxsize=32768)  # A page, the index and the readme need the same sweep.
 def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
-    """`fit` for (step, error) pairs, from coarse to fine."""
+    """`fit` for pairs (step, error) from coarse to fine."""
     if not pairs:
         return Fit(Verdict.TOO_FEW)
     first = next((index for index, (_, e) in enumerate(pairs) if e <= rounding), len(pairs))
@@ -109,12 +109,12 @@ def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
         return Fit(Verdict.FALLS, order, points, spread)
     if slopes[-1] < -FLAT and (len(slopes) == 1 or slopes[-2] < FLAT):
         return Fit(Verdict.GROWS, order, points, spread)
-    # A single flat interval may be a change of sign of the error; two flat intervals would be a plateau.
+    # A single flat interval may be a change of sign of the error. Two flat intervals would be a plateau.
     return Fit(Verdict.LEVELS if slopes[-1] > -FLAT else Verdict.ERRATIC, order, points, spread)
 
 
 def _longest_run(mask: np.ndarray) -> tuple[int, int]:
-    """(start, stop) of the longest run of true values; the last one if several are equally long."""
+    """(start, stop) of the longest run of true values. Among runs of equal length the last run counts."""
     best, start = (0, 0), None
     for index, value in enumerate([*mask, False]):
         if value and start is None:
@@ -127,10 +127,9 @@ def _longest_run(mask: np.ndarray) -> tuple[int, int]:
 
 
 def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
-    """(limit, uncertainty) of errors whose last two intervals are flat, or NaN for other errors.
+    """(limit, uncertainty) if the last two intervals are flat, or NaN.
 
-    One flat interval suffices if the errors rise to a limit from below, after two errors have cancelled at a coarser
-    step.
+    One flat interval suffices if the errors rise to a limit. Then two errors have cancelled at a coarser step.
     """
     if len(errors) < 3 or abs(slopes[-1]) > FLAT:
         return NAN, NAN
@@ -140,10 +139,10 @@ def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple
 
 
 def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
-    """(limit, uncertainty, whether it converges) of the three finest points by limit + factor * step ** power.
+    """(limit, uncertainty, whether the errors converge) of a fit limit + factor * step ** power to three points.
 
-    If no power within POWERS passes through all three points, the limit is the error at the finest step, and the
-    uncertainty is its largest difference from the other two errors.
+    If no power within POWERS fits, the limit is the error at the finest step. The uncertainty is then the largest
+    difference between this error and the other two errors.
     """
     before, last = errors[0] - errors[1], errors[1] - errors[2]
     if last and before / last > 0:
@@ -163,7 +162,7 @@ def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
 def _order(
     steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray, run: tuple[int, int], plateau: float
 ) -> tuple[float, int, float]:
-    """(order, points, spread) by least squares over the falling run, without coarse outliers and the plateau."""
+    """(order, points, spread) of a least-squares fit in the falling part, without coarse outliers and the plateau."""
     start, stop = run[0], run[1] + 1
     if run[0] == run[1]:
         return NAN, 0, NAN
@@ -204,7 +203,7 @@ def by_method(found: Iterable[Sweep], quantity: str) -> Mapping[tuple[str, str, 
 
 
 def judged(rows: Iterable[Measurement], quantity: str = "angle") -> list[Measurement]:
-    """The rows with `finished` replaced by `converged` or `plateau`, if their sweep shows either."""
+    """Replace the outcome `finished` by `converged` or `plateau` if the sweep of the row shows this."""
     rows = list(rows)
     verdicts = by_method(sweeps(rows, [q for q in QUANTITIES if q.name == quantity]), quantity)
     out = []

@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import ClassVar
 
-LONGEST_MESSAGE = 500  # characters of the description of an exception
+LONGEST_MESSAGE = 500  # Largest number of characters that describe an exception.
 FINE = 0
 BROKEN = 1
 REFUSED = 2
 INTERRUPTED = 130  # The status that shells expect after Ctrl-C.
-UNREAD = 141  # 128 + SIGPIPE: the reader of the pipe has ended.
+UNREAD = 141  # 128 + SIGPIPE. The reader of the pipe has ended.
 
 STATUSES = (
     f"Exit status: {FINE} fine; {BROKEN} something ran but is broken; {REFUSED} bad input or trouble with a file, and "
@@ -22,25 +22,25 @@ STATUSES = (
 
 
 class Ending(Exception):
-    """A sentence for one line on stderr; the program ends with `status`."""
+    """An exception that ends the program with `status`. Its message is printed as one line on stderr."""
 
     status: ClassVar[int]
 
 
 class Broken(Ending):
-    """A run or a check failed; the message names it and the reason."""
+    """A run or a check has failed. The message names the run or the check, and the reason."""
 
     status = BROKEN
 
 
 class BadInput(Ending, ValueError):
-    """Input that is refused; the message names the value, the reason and valid values."""
+    """An input is refused. The message contains the value, the reason and valid values."""
 
     status = REFUSED
 
 
 class FileTrouble(Ending):
-    """A file that cannot be used; the message names the file, the reason and the remedy."""
+    """A file cannot be used. The message contains the file, the reason and the remedy."""
 
     status = REFUSED
 
@@ -49,9 +49,9 @@ NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
 
 
 def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str] = NONE_ABSENT) -> BadInput:
-    """The error about an unknown word, with the nearest known one if any is similar, regardless of case.
+    """The error about an unknown word. It suggests the most similar known word, regardless of case.
 
-    `absent`: name -> a sentence on how to install it, for known names that are not available here.
+    absent: name of an item that is not installed -> a sentence on how to install it.
     """
     names = {name.lower(): name for name in (*known, *absent)}
     low = word.lower()
@@ -65,7 +65,7 @@ def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str
 
 
 def visible(text: str) -> str:
-    """The text with escapes for characters that control a terminal or the direction of text, as in names of files."""
+    """The text with escapes instead of characters that control a terminal or the direction of text."""
     if text.isprintable():
         return text
     return "".join(
@@ -75,7 +75,7 @@ def visible(text: str) -> str:
 
 
 def describe(error: BaseException) -> str:
-    """'Type: message', also for an exception whose message can't be computed."""
+    """'Type: message' of an exception. A message that can't be computed is replaced."""
     try:
         message = str(error)
     except Exception:

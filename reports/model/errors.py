@@ -1,4 +1,4 @@
-"""Errors of a trajectory relative to the exact motion at the same instants, or NaN for a quantity without any."""
+"""Errors of a trajectory relative to the exact motion at the same instants. An unknown error is NaN."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ NAN = float("nan")
 
 
 def largest(values: Array) -> float:
-    """The largest absolute value, without NaN, or NaN if there is no other value."""
+    """The largest absolute value. NaN values are ignored unless all values are NaN."""
     values = np.abs(np.asarray(values, dtype=float))
     values = values[~np.isnan(values)]
     return float(values.max()) if values.size else NAN
 
 
 def root_mean_square(values: Array) -> float:
-    """The root mean square without NaN, or NaN if there is no other value."""
+    """The root mean square. NaN values are ignored unless all values are NaN."""
     values = np.asarray(values, dtype=float)
     values = values[~np.isnan(values)]
     return float(np.sqrt(np.mean(values**2))) if values.size else NAN
 
 
 def usable_samples(trajectory: Trajectory) -> int:
-    """The number of samples before the first one that is not finite."""
+    """The number of samples before the first sample that is not finite."""
     finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))
     return len(trajectory.t) if np.all(finite) else int(np.argmin(finite))
 
 
 def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str, float]:
-    """The largest `gap` [m], `drive_gap` [rad] and `slip` [m/s or rad/s] of the constraints."""
+    """Constraint violations: the largest `gap` [m], `drive_gap` [rad] and `slip` [m/s or rad/s]."""
     turning = mechanism.is_angular
     gap, speed = joint_gap(mechanism, trajectory), slip(mechanism, trajectory)
     return {"gap": largest(gap[:, ~turning]), "drive_gap": largest(gap[:, turning]), "slip": largest(speed)}
@@ -43,9 +43,9 @@ def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str,
 def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, trajectory: Trajectory) -> dict[str, float]:
     """Errors within the scene's horizon, and `angle_duration` over the whole duration.
 
-    position [m], angle [rad], velocity [m/s], rate [rad/s]: the largest over samples and bodies, and root mean squares.
-    energy: the largest difference from the exact energy, relative to the largest exact kinetic energy. This is also
-    defined for a driven motion, and does not depend on the reference height.
+    The errors of position [m], angle [rad], velocity [m/s] and rate [rad/s] are maxima over samples and bodies.
+    Names with `_rms` are root mean squares. The energy error is relative to the largest exact kinetic energy. So it is
+    also defined for a driven motion and does not depend on the reference height.
     """
     within = trajectory.t <= scene.horizon * (1 + 1e-12)
     pose, twist = trajectory.pose - truth.pose, trajectory.twist - truth.twist
@@ -67,7 +67,7 @@ def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, traject
 
 
 def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float:
-    """Largest error of the known reactions (times, rows), relative to the largest exact force or moment."""
+    """Largest error of the reactions (times, rows), relative to the largest exact force or moment."""
     turning = mechanism.is_angular
     worst = [NAN]
     for rows in (turning, ~turning):
@@ -78,7 +78,7 @@ def reaction_error(mechanism: Mechanism, truth: Array, reaction: Array) -> float
 
 
 def branch_flips(scene: Scene, truth: Trajectory, trajectory: Trajectory) -> int:
-    """The number of changes of the assembly mode relative to that of the exact motion."""
+    """The number of changes between agreement and disagreement with the assembly mode of the exact motion."""
     agreement = scene.branch_of(trajectory.pose) * scene.branch_of(truth.pose)
     agreement = np.concatenate([[1], agreement[agreement != 0]])
     return int(np.sum(agreement[1:] != agreement[:-1]))

@@ -1,7 +1,7 @@
-"""The cache key of results: a digest of the source files and installed versions that they depend on.
+"""The cache key of results is a digest of the source files and installed versions that affect them.
 
-A row depends on all sources in MEASURING, the answer to a task on all sources in OURS. A module of a third party counts
-by its version if it is installed, else by the files of its package or folder.
+A row depends on all sources in MEASURING. The answer to a task depends on all sources in OURS. An installed module of a
+third party is identified by its version, and another module by the files of its package or folder.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from engines.package_versions import installed_version
 
 ROOT = Path(__file__).resolve().parents[2]
 OURS = ("reference", "engines", "reports")
-MEASURING = ("reference", "engines", "reports/model", "reports/run")  # the folders that a row depends on
+MEASURING = ("reference", "engines", "reports/model", "reports/run")  # Rows depend on these folders.
 SUFFIXES = {f".{suffix.rpartition('.')[2]}" for suffix in (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)}
-INSTALLED = {"site-packages", "dist-packages"}  # Names of folders whose modules count by their versions.
+INSTALLED = {"site-packages", "dist-packages"}  # Modules in these folders are identified by their versions.
 SCIENTIFIC = ("numpy", "scipy")  # Packages on which every result depends.
-SHORT, USUAL, LONG = 8, 16, 32  # Hexadecimal digits for a table, the name of a file, a cache key.
+SHORT, USUAL, LONG = 8, 16, 32  # Numbers of hexadecimal digits in tables, names of files, and cache keys.
 
 
 def digest(content: str | bytes, digits: int = USUAL) -> str:
@@ -37,12 +37,12 @@ def digest(content: str | bytes, digits: int = USUAL) -> str:
 
 
 def fingerprint(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
-    """The digest for results of these scenes, engines or tasks; `folders`: those of this suite that count."""
+    """The digest for results of these scenes, engines or tasks. folders: folders of this suite that affect them."""
     return digest(repr(versions_of(*values, folders=folders)), LONG)
 
 
 def versions_of(*values: Any, folders: tuple[str, ...] = MEASURING) -> dict[str, str]:
-    """Name -> version of each distribution and of Python, and digests of source files."""
+    """Name -> version of a distribution or of Python, or digest of source files."""
     modules, packages = set[str](), set[str]()
     for value in _parts(values):
         kinds = (*(value if isinstance(value, type) else type(value)).__mro__, *((value,) if callable(value) else ()))
@@ -61,14 +61,14 @@ def _versions(modules: frozenset[str], packages: frozenset[str], folders: tuple[
             distributions.update(_distributions().get(module, ()))
     for name in sorted(with_required(distributions | _rivals(packages))):
         versions[name] = metadata.version(name)
-    for name in packages:  # These include packages of npm.
+    for name in packages:  # Some of them are npm packages.
         with suppress(metadata.PackageNotFoundError):
             versions.setdefault(normalised(name), installed_version(name))
     return {**versions, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}
 
 
 def _rivals(packages: Iterable[str]) -> set[str]:
-    """Distributions that share a module with one of these, such as a release under another name."""
+    """Distributions that share a module with these packages, such as a release under another name."""
     named = {normalised(name) for name in packages}
     holders = [set(map(normalised, names)) for names in _distributions().values()]
     return {name for names in holders if names & named for name in names}
@@ -86,10 +86,10 @@ def _parts(values: Iterable[Any]) -> Iterator[Any]:
 
 
 def _files(module: str) -> tuple[Path, ...]:
-    """The sources of a top-level module that is not installed, and files whose names occur in them; else empty."""
+    """The sources of a module, and the files whose names occur in them. Empty for an installed module."""
     try:
         spec = find_spec(module)
-    except (ImportError, ValueError):  # a module without a spec
+    except (ImportError, ValueError):  # The module has no spec.
         spec = None
     if spec is None or not (spec.submodule_search_locations or spec.origin):
         return ()
@@ -105,7 +105,7 @@ def _files(module: str) -> tuple[Path, ...]:
 
 @cache
 def _our_files(folders: tuple[str, ...]) -> str:
-    """A digest of our sources, which does not depend on the folder of the checkout."""
+    """A digest of this suite's sources. It does not depend on the folder of the checkout."""
     paths = (sorted((ROOT / folder).rglob(pattern)) for folder in folders for pattern in ("*.py", "*.mjs"))
     return _content(path for group in paths for path in group)
 
@@ -122,7 +122,7 @@ def _distributions() -> Mapping[str, list[str]]:
 def with_required(distributions: Iterable[str]) -> set[str]:
     """Normalised names of the distributions and of all installed distributions that they require.
 
-    A package that only an extra requires is left out, since it may be installed without being used.
+    Packages that only an extra requires are left out, since they may be installed without being used.
     """
     names: set[str] = set()
     waiting = list(distributions)
@@ -136,7 +136,7 @@ def with_required(distributions: Iterable[str]) -> set[str]:
 
 @cache
 def _required(name: str) -> tuple[str, ...] | None:
-    """The requirements of a distribution. None if it is not installed, for example on another operating system."""
+    """The requirements of a distribution, or None if it is not installed."""
     try:
         requirements = metadata.requires(name) or []
     except metadata.PackageNotFoundError:

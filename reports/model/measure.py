@@ -1,4 +1,4 @@
-"""Runs a cell and measures its row: outcome, errors, cost and size."""
+"""Functions that run a cell and measure the outcome, the errors, the cost and the size."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from reports.model.spending import spending
 
 NAN = float("nan")
 TIMED = ("sweep", "beside", "growth", "large")  # Purposes whose rows are charted against their cost.
-SAME_INSTANT = 1e-15  # Relative difference of equal instants, from rounding.
-# CPU seconds after which a run is not repeated: the median of 70 cells was then 1.8 % above the minimum of ten runs.
+SAME_INSTANT = 1e-15  # Relative difference between equal instants due to rounding.
+# After these CPU seconds a run is not repeated. The measured times are then 1.8 % above the minimum of ten runs.
 BUDGET = 0.015
 MOST_RUNS = 5
-LONG_RUN = 0.05  # s; a longer run is not repeated, since it takes only 1.01 times the minimum of three repetitions.
-TRUTHS = "truths"  # The folder of exact motions beside a store, which may be deleted at any time.
-SHORT_MOTION = 5e-3  # s; computing a shorter motion again is faster than reading it.
-# Exceptions of reading a damaged file; RuntimeError is that of a part marked as encrypted.
+LONG_RUN = 0.05  # A longer run [s] is not repeated, since its time is only 1 % above the minimum of three repetitions.
+TRUTHS = "truths"  # The folder of exact motions beside a store. It may be deleted at any time.
+SHORT_MOTION = 5e-3  # A motion that is computed in less time [s] is not stored, since reading it would take longer.
+# Exceptions when a damaged file is read. A part that is marked as encrypted raises RuntimeError.
 DAMAGES = (OSError, ValueError, KeyError, EOFError, RuntimeError, MemoryError, struct.error, zlib.error, BadZipFile)
 PARTS = ("t", "pose", "twist", "reaction")
 
@@ -54,10 +54,10 @@ class Measurement:
     key: str
     purpose: str
     scene: str
-    parameters: str  # the scene with its numbers
+    parameters: str  # The scene with its parameters.
     engine: str
     variant: str
-    settings: str  # the engine with its settings
+    settings: str  # The engine with its settings.
     every: int
     samples: int
     step: float  # s
@@ -67,7 +67,7 @@ class Measurement:
     position_rms: float = NAN
     angle: float = NAN
     angle_rms: float = NAN
-    angle_duration: float = NAN  # the angle error over the whole duration
+    angle_duration: float = NAN  # The angle error over the whole duration.
     velocity: float = NAN
     rate: float = NAN
     gap: float = NAN
@@ -75,9 +75,9 @@ class Measurement:
     slip: float = NAN
     energy: float = NAN
     reaction: float = NAN
-    reaction_rows: int = 0  # constraint rows whose reaction the engine reports
+    reaction_rows: int = 0  # Number of constraint rows with a reported reaction.
     flips: int = 0
-    estimate: float = NAN  # rad, the method's own estimate of its largest angle error
+    estimate: float = NAN  # Largest angle error [rad] as estimated by the method.
     bodies: int = 0
     coordinates: int = 0
     rows: int = 0
@@ -86,10 +86,10 @@ class Measurement:
     own_coordinates: int = 0
     own_rows: int = 0
     own_freedoms: int = 0
-    cpu: float = NAN  # Of stepping per simulated second.
-    runs: int = 0  # Number of runs, of whose times `cpu` is the minimum.
+    cpu: float = NAN  # CPU seconds of stepping per simulated second.
+    runs: int = 0  # Number of runs; `cpu` is the minimum of their times.
     build: float = NAN
-    limit: float = NAN  # CPU seconds; of a cell that timed out
+    limit: float = NAN  # Limit [CPU seconds] at which a cell timed out.
 
     @property
     def method(self) -> str:
@@ -97,14 +97,14 @@ class Measurement:
 
     @property
     def engine_sentence(self) -> str:
-        """The sentence up to the first warning of our adapter."""
+        """The part of the sentence before the first warning of our adapter."""
         return self.sentence.partition(f"; {ADAPTER_PREFIX}")[0]
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
 
     def _repr_html_(self) -> str:
-        """The fields that have a value, as a table for a notebook."""
+        """A table for notebooks. Fields without a value are left out."""
         known = ((name, value) for name, value in self.as_dict().items() if value not in ("", 0) and value == value)
         rows = (f"<tr><th>{name}</th><td>{escape(str(value))}</td></tr>" for name, value in known)
         return f"<table>{''.join(rows)}</table>"
@@ -131,9 +131,9 @@ def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> 
 
 
 def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
-    """The scene's motion at an engine's instants t (times,) [s], read from or stored in an existing folder.
+    """The scene's motion at the instants t (times,) [s]. If the folder exists, motions are stored there.
 
-    Instants that differ only by rounding share a motion. Raises ValueError if the scene refuses.
+    Instants that differ only by rounding share a motion. Raises ValueError if the scene has no such motion.
     """
     usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
     shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
@@ -144,7 +144,7 @@ def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
 
 @lru_cache(maxsize=128)
 def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
-    """The cached motion. The name of its file is a digest of everything it depends on, so that it is never stale."""
+    """The cached motion. The name of its file is a digest of everything that affects it, so it is never stale."""
     if folder is None or not folder.is_dir():
         return freeze(scene.motion(np.frombuffer(instants)))
     file = folder / f"{digest(name.encode() + instants, LONG)}.npz"
@@ -157,7 +157,7 @@ def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Tr
 
 
 def _store_motion(motion: Trajectory, file: Path) -> None:
-    """Write the complete file or none; errors are ignored, since the motion can be computed again."""
+    """Write the complete file or no file. Errors are ignored, since the motion can be computed again."""
     half = file.with_name(f"{file.stem}.{os.getpid()}.half")
     with suppress(OSError):
         try:
@@ -174,9 +174,9 @@ def _own_freedoms(scene: Scene) -> int:
 
 
 def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Measurement:
-    """Build, run, compare and time one cell in this process. `truths`: the folder of exact motions.
+    """Build, run, compare and time one cell in this process. truths: folder of exact motions.
 
-    Refusals and warnings of the engine become outcomes; other exceptions are raised, and the pool records them.
+    Refusals and warnings of the engine become outcomes. Other exceptions are raised.
     """
     row = blank(cell)
     with np.errstate(all="ignore"):
@@ -210,7 +210,7 @@ def process_seconds(function: Callable[[], Result]) -> tuple[float, Result]:
 
 
 def repeated_stepping(cell: Cell, mechanism: Mechanism, first: float, build: float) -> tuple[float, int, float]:
-    """(minimum stepping time [s], number of runs, minimum building time [s]) of a cell that was run once."""
+    """Repeat a cell; return (minimum stepping time [s], number of runs, minimum building time [s])."""
     if not first < LONG_RUN:
         return first, 1, build
     times: list[float] = []
@@ -242,16 +242,16 @@ def compare(
     note = "; ".join(filter(None, dict.fromkeys([note, *trajectory.warnings])))
     try:
         errors |= constraint_errors(mechanism, finite) if count else {}
-    except ValueError as reason:  # the joint is not defined at a pose of the run, for example beyond a corner
+    except ValueError as reason:  # A pose is outside the domain of a joint, such as beyond a corner.
         sentence = "; ".join(filter(None, (f"a joint has no meaning at the end: {reason}", note)))
         return replace(row, outcome=Outcome.REFUSED, sentence=sentence)
     try:
         truth = exact_motion(cell, finite.t, truths)
         errors |= motion_errors(cell.scene, mechanism, truth, finite)
         errors["flips"] = branch_flips(cell.scene, truth, finite)
-    except NoMotion as reason:  # the exact motion is unknown, so that no error can be computed
+    except NoMotion as reason:  # Errors are unknown without an exact motion.
         return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
-    except ValueError as reason:  # the exact motion does not exist; the row keeps the engine's outcome
+    except ValueError as reason:  # The exact motion does not exist. The row has the engine's outcome.
         note = "; ".join(filter(None, (f"the reference refuses: {reason}", note)))
     if trajectory.estimate is not None and not np.isnan(trajectory.estimate[..., 2]).all():
         errors["estimate"] = float(np.nanmax(np.abs(trajectory.estimate[..., 2])))
@@ -262,7 +262,7 @@ def compare(
 
 
 def stopped_where_it_ends(scene: Scene, trajectory: Trajectory) -> tuple[Trajectory, str]:
-    """The samples that can be compared with the ideal motion, and a sentence if others were removed."""
+    """(the samples that can be compared with the ideal motion, a sentence if samples were removed)."""
     limit = scene.comparable_until
     count = int(np.sum(trajectory.t <= limit * (1 + 1e-12)))
     if count == len(trajectory.t):

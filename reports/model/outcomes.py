@@ -1,7 +1,6 @@
-"""The possible outcomes of a cell, and the functions that decide which of them applies.
+"""The possible outcomes of a cell, and the functions that determine the outcome.
 
-`of_motion` applies to a cell with a motion, `refusal`, `failure`, `out_of_time` and `second_crash` to other cells.
-`converged` and `plateau` follow from a sweep (`reports.model.convergence`).
+`of_motion` determines the outcome of a motion, but `converged` and `plateau` follow from a sweep.
 """
 
 from __future__ import annotations
@@ -19,17 +18,17 @@ if TYPE_CHECKING:
     from reference.trajectory import Trajectory
     from reports.model.measure import Measurement
 
-TORN = 0.05  # Largest gap in lengths of the mechanism; softness causes much smaller ones, and links are longer.
-BLOWN = 1e3  # Gap in lengths of the mechanism above which a run has diverged.
-SATURATED = 0.5  # rad; a larger angle error is no longer proportional to its cause.
+TORN = 0.05  # A larger gap, relative to the mechanism's length, is a torn joint. Softness causes much smaller gaps.
+BLOWN = 1e3  # A larger gap, relative to the mechanism's length, means that the run has diverged.
+SATURATED = 0.5  # A larger angle error [rad] is not proportional to its cause.
 
 
 class Outcome(StrEnum):
     meaning: str  # A clause for pages.
-    letter: str  # In a map.
-    grade: int  # 0: the errors are comparable; 1: the method declares no result; 2: a wrong motion; 3: no motion.
-    colour: str  # In a map: a field of `reports.plots.theme.Theme`.
-    hatch: str  # In a map.
+    letter: str  # Letter in maps.
+    grade: int  # 0: comparable errors, 1: no result by declaration, 2: wrong motion, 3: no motion.
+    colour: str  # Colour in maps, a field of `reports.plots.theme.Theme`.
+    hatch: str  # Hatching in maps.
 
     def __new__(cls, word: str, letter: str, grade: int, colour: str, hatch: str, meaning: str) -> Self:
         outcome = str.__new__(cls, word)
@@ -76,7 +75,7 @@ class Outcome(StrEnum):
         *("failed", "F", 3, "worse", ""),
         "an unexpected exception, or an answer that is no motion at the instants asked for",
     )
-    # Never stored, since it does not depend on the engine.
+    # This outcome is not stored, since it does not depend on the engine.
     LOST = (
         *("lost", "x", 3, "worse", ""),
         "its process was killed from outside, twice, or a module could not be imported there",
@@ -84,7 +83,7 @@ class Outcome(StrEnum):
 
     @property
     def comparable(self) -> bool:
-        """Whether the errors of such a cell measure the accuracy of the method."""
+        """Whether errors of cells with this outcome measure the accuracy of the method."""
         return self.grade == 0
 
     @property
@@ -98,8 +97,8 @@ class Loss:
     sentence: str
 
 
-# Signals that a user, a batch system at its limits, or the kernel (if memory is short) sends to a process. Other
-# signals that end a process come from its own code. Windows defines only few of these names.
+# These signals are sent to a process by a user, a batch system, or the kernel if memory is short. Other signals that
+# end a process are caused by its code. Windows defines only few of these names.
 FROM_OUTSIDE = {
     getattr(signal, name)
     for name in ("SIGKILL", "SIGTERM", "SIGHUP", "SIGINT", "SIGQUIT", "SIGXCPU", "SIGXFSZ")
@@ -108,12 +107,12 @@ FROM_OUTSIDE = {
 
 
 def from_outside(code: int | None) -> bool:
-    """Whether another process ended the process with this exit code; true for an unknown exit code (None)."""
+    """Whether the exit code means that another process ended this process. True for the unknown exit code None."""
     return code is None or -code in FROM_OUTSIDE
 
 
 def describe_exit(code: int | None) -> str:
-    """A clause about a process with this exit code; negative codes are signals."""
+    """A clause about a process with this exit code. Negative codes are signals."""
     if code is None:
         return "the process ended with an unknown exit status"
     if code < 0:
@@ -123,37 +122,37 @@ def describe_exit(code: int | None) -> str:
             name = "unknown"
         how = "killed from outside" if from_outside(code) else "aborted"
         return f"{how} with signal {-code} ({name})"
-    if code >= 2**31:  # Windows ends a process with such a status for a forbidden operation
+    if code >= 2**31:  # Windows uses such a status for a forbidden operation.
         return f"aborted with status 0x{code:08X}"
     return f"the process ended by itself with exit status {code}"
 
 
 def refusal(reason: Exception) -> Loss:
-    """The loss of a cell that an engine or the reference refused with ValueError or `engines.Unsupported`."""
+    """The result of a cell if the engine or the reference raises ValueError or `engines.Unsupported`."""
     return Loss(Outcome.REFUSED if isinstance(reason, ValueError) else Outcome.UNSUPPORTED, str(reason))
 
 
 def failure(error: BaseException) -> Loss:
-    """The loss of a cell that raised another exception; after a failed import the cell is lost."""
+    """The result of a cell that raises any other exception. After an ImportError the outcome is LOST."""
     return Loss(Outcome.LOST if isinstance(error, ImportError) else Outcome.FAILED, describe(error))
 
 
 def out_of_time(limit: float, wall: float | None = None) -> Loss:
-    """The loss of a cell that used up its CPU time [s], or, with `wall`, slept longer than this [s]."""
+    """The result of a cell that exceeds its CPU time [s]. wall: the wall time [s] if the cell exceeds this instead."""
     if wall is None:
         return Loss(Outcome.TIMED_OUT, f"did not end within {limit:g} s of CPU time")
     return Loss(Outcome.TIMED_OUT, f"did not end within {wall:g} s, and used less than {limit:g} s of CPU time")
 
 
 def second_crash(code: int | None, words: str, earlier: str) -> Loss:
-    """The loss of a cell whose process ended twice; `code` and `words` are those of the second end."""
+    """The result of a cell whose process ended twice. code, words: exit code and description of the second end."""
     if from_outside(code):
         return Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {earlier}")
     return Loss(Outcome.ABORTED, words)
 
 
 def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, count: int) -> tuple[Outcome, str]:
-    """(the gravest outcome that applies, a sentence with the number that decided it); `count`: finite samples."""
+    """(the gravest outcome that applies, a sentence with the reason). count: number of finite samples."""
     length = mechanism.length_scale
     if trajectory.reset_at is not None:
         return Outcome.RESET, f"started anew by itself at {trajectory.reset_at:.4g} s"
@@ -162,7 +161,7 @@ def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, co
     if row.gap > BLOWN * length:
         return Outcome.DIVERGED, f"a joint opened by {row.gap:.2g} m"
     if row.gap > TORN * length:
-        # Only warnings of the engine itself count, not those of our adapters.
+        # Warnings of the engine count, but warnings of our adapters do not.
         quiet = "" if trajectory.has_engine_warning else ", without a warning"
         return Outcome.TORN, f"a joint opened by {row.gap:.2g} m in a mechanism of {length:.2g} m{quiet}"
     if row.drive_gap > SATURATED:

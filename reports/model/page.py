@@ -1,4 +1,4 @@
-"""The parts of a page, and the data that it is rendered from."""
+"""The parts of a page, and the data from which a page is rendered."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def no_context(material: Material) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Observation:
-    """The outcome of a stored motion or of a method of the reference, which are no cells."""
+    """The outcome of a computation that is no cell, such as a stored motion or a method of the reference."""
 
     method: str
     setting: str
@@ -33,20 +33,20 @@ class Observation:
 class Failure:
     """An experiment in which methods are expected to fail.
 
-    `expected` and `remark` are templates with the variables of `context`. In a remark, `at(method, step)` is the row at
-    about this step [s], and `count(outcome)` the number of rows with an outcome, or of all rows. A clause within
-    `if_measured` is left out if one of its numbers is missing.
+    `expected` and `remark` are templates with the variables of `context`. In a remark, `at(method, step)` is the row
+    with the nearest step [s], and `count(outcome)` is the number of rows with this outcome. `count()` is the number of
+    all rows. A clause within `if_measured` is left out if one of its numbers is missing.
     """
 
     title: str
     expected: str = ""  # The behaviour according to the reference.
-    cells: tuple[Cell, ...] = ()  # With the purpose "failure"
-    observations: Callable[[Material], Sequence[Observation]] | None = None  # Reads the answers to `tasks`.
-    remark: str = ""  # About the outcomes.
-    columns: tuple[str, ...] = ()  # Quantities whose largest errors are printed; if empty, a grid of angle errors.
+    cells: tuple[Cell, ...] = ()  # Cells with the purpose "failure".
+    observations: Callable[[Material], Sequence[Observation]] | None = None  # Uses answers.
+    remark: str = ""  # Text about the outcomes.
+    columns: tuple[str, ...] = ()  # Quantities with printed errors. If empty, a grid of angle errors is printed.
     tasks: tuple[Task, ...] = ()
     context: Callable[[Material], Mapping[str, Any]] = no_context
-    claims: tuple[str, ...] = ()  # expressions that hold where the remark is true (`reports.pages.claims`)
+    claims: tuple[str, ...] = ()  # Expressions that are true if the remark is true (`reports.pages.claims`).
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Material:
         return answer if answer is not None and answer.finished else None
 
     def unfinished(self, task: Task) -> str:
-        """The reason why a task has no numbers: the sentence of its run, or the command to install or run it."""
+        """The reason why a task has no numbers, or a command that installs or runs it."""
         if answer := self.answers.get(task):
             return f"Not finished, {answer.told}."
         if task.engine is not None and task.engine.missing:
@@ -69,7 +69,7 @@ class Material:
         return "Not run yet: `crosscheck run --full`, then `crosscheck report`."
 
     def motions(self, cells: Iterable[Cell]) -> dict[Cell, Trajectory]:
-        """The stored motions of these cells, without those not run or not finished."""
+        """The stored motions of these cells. Cells that are not run or not finished are left out."""
         answers = ((cell, self.finished(Motion(cell))) for cell in cells)
         return {cell: trajectory_of(answer) for cell, answer in answers if answer is not None}
 
@@ -90,7 +90,7 @@ class Material:
 
 
 def usual_series(row: Measurement) -> bool:
-    """Whether charts show the row's method as a series: one run in every scene, or a usual variant of an engine."""
+    """Whether charts show the method of the row. It is run in every scene, or is a usual variant of an engine."""
     from engines.registry import VARIANTS, method_name
 
     return row.variant in FEATURED or row.method in map(method_name, VARIANTS)
@@ -101,34 +101,34 @@ class Page:
     name: str
     title: str
     lesson: str  # One sentence for the index.
-    scenes: tuple[Scene, ...] = ()  # The scenes that the page teaches, each on only one page.
+    scenes: tuple[Scene, ...] = ()  # The scenes that the page explains. A scene belongs to only one page.
     engines: tuple[Engine, ...] = ()
-    companions: tuple[Scene, ...] = ()  # Scenes of other pages whose runs include the cells of this page's failures.
-    borrowed: tuple[Cell, ...] = ()  # Cells of other pages whose rows this page uses; it does not run them.
-    # A template, which may extend "base.md". If None: page.md in the folder with the page's name, else "base.md".
+    companions: tuple[Scene, ...] = ()  # A run of one of these scenes includes the cells of this page's failures.
+    borrowed: tuple[Cell, ...] = ()  # Cells that other pages run and whose rows this page uses.
+    # A template, which may extend "base.md". By default it is page.md in the folder of the page, else "base.md".
     template: Path | None = None
     failures: tuple[Failure, ...] = ()
-    # Whether an engine runs a scene; an engine for a special joint is only run in scenes with this joint.
+    # Whether an engine runs a scene. An engine for a special joint runs only in scenes with this joint.
     compared: Callable[[Scene, Engine], bool] = lambda scene, engine: True
-    quantity: str = "angle"  # Whose error is compared and charted.
-    advised: str = ""  # The scene for which the page recommends settings; the first if empty.
+    quantity: str = "angle"  # The quantity whose error is compared and charted.
+    advised: str = ""  # The scene for which the page recommends settings, by default the first scene.
     featured: Callable[[Measurement], bool] = usual_series
-    figures: Callable[[Material], Mapping[str, str]] = no_context  # SVG texts by file name without ending.
-    context: Callable[[Material], Mapping[str, Any]] = no_context  # The template's own variables.
-    further: Callable[[Material], Mapping[str, str]] = no_context  # Markdown files beside the page, by name.
-    # (scene, method) -> the order, if it differs from the engine's declared one because of the motion.
+    figures: Callable[[Material], Mapping[str, str]] = no_context  # Name -> SVG text.
+    context: Callable[[Material], Mapping[str, Any]] = no_context  # Variables of the template.
+    further: Callable[[Material], Mapping[str, str]] = no_context  # Name -> text of a Markdown file beside the page.
+    # (scene, method) -> the order, if the motion changes the order that the engine declares.
     orders: Mapping[tuple[str, str], ConvergenceOrder] = field(default_factory=dict, compare=False)
     # (scene, method, check) -> the known deviation of this check (`reports.model.checks`).
     known: Mapping[tuple[str, str, str], Deviation] = field(default_factory=dict, compare=False)
-    tasks: tuple[Task, ...] = ()  # For its pictures and text, without those of `failures`.
-    cells: tuple[Cell, ...] = ()  # Besides the grid and the experiments.
+    tasks: tuple[Task, ...] = ()  # Tasks for pictures and text. Tasks of `failures` are not included.
+    cells: tuple[Cell, ...] = ()  # Cells in addition to the grid and the experiments.
 
     def teaches(self, scene: Scene) -> bool:
-        """Whether a scene with this name is on the page; its numbers may differ."""
+        """Whether a scene with this name, perhaps with other parameters, is on the page."""
         return scene.name in {own.name for own in self.scenes}
 
     def is_run_with(self, scene: Scene) -> bool:
-        """Whether the cells of failures are run with the scene."""
+        """Whether a run of the scene includes the cells of failures."""
         return scene.name in {other.name for other in (*self.scenes, *self.companions)}
 
     @property
@@ -144,5 +144,5 @@ class Page:
         return tuple(engine for engine in self.engines if self.compared(scene, engine))
 
     def extra_cells(self) -> tuple[Cell, ...]:
-        """The cells of the failures and of `cells`, which are not part of the grid."""
+        """The cells of the failures and the cells in `cells`. The grid does not contain them."""
         return (*(cell for failure in self.failures for cell in failure.cells), *self.cells)

@@ -1,6 +1,6 @@
-"""CPU time of a process by parts, each without the time of the parts inside it.
+"""CPU time of the parts of a process. The time of a part does not include the parts inside it.
 
-It is always counted, since reading the clock takes a microsecond; only `crosscheck bench suite` prints it.
+The time is always measured, since reading the clock takes only a microsecond. `crosscheck bench suite` prints it.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 _spent: defaultdict[str, float] = defaultdict(float)
-_inside: list[float] = []  # CPU time [s] of the inner parts, for each open part
+_inside: list[float] = []  # For each open part: CPU time [s] of the parts inside it.
 
 
 @contextmanager
 def spending(part: str) -> Iterator[None]:
-    """Count the CPU time [s] of the block, without the parts inside it that are counted separately."""
+    """Measure the CPU time [s] of a block. The parts inside the block are measured separately."""
     begin = time.process_time()
     _inside.append(0.0)
     try:
@@ -29,7 +29,7 @@ def spending(part: str) -> Iterator[None]:
 
 
 def taken() -> Mapping[str, float]:
-    """Part -> CPU seconds since the last call."""
+    """Part -> CPU seconds since the last call of this function."""
     out = dict(_spent)
     _spent.clear()
     return out

@@ -1,6 +1,6 @@
-"""A task computes further data of a page, such as a motion. Its answer is stored, as rows are.
+"""A task computes further data of a page, such as a motion. The answer is stored like a row.
 
-So writing a page reads only stored data, and does not step or integrate.
+So a page is written from stored data alone, without stepping or integration.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ Values = Mapping[str, Array | str]
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """The result of a task: its values by name if it finished, else a sentence with the reason."""
+    """The result of a task. It consists of values by name, or of a sentence with the reason why there are none."""
 
     outcome: Outcome
     sentence: str = ""
     values: Values = field(default_factory=dict)
-    limit: float = float("nan")  # CPU seconds; of a task that timed out
+    limit: float = float("nan")  # Limit [CPU seconds] at which a task timed out.
 
     @property
     def finished(self) -> bool:
@@ -53,17 +53,17 @@ class Answer:
 
 
 class Task(ABC):
-    """Subclasses are frozen dataclasses: a task can be pickled for a worker, and its fields identify it.
+    """The base of tasks, which are frozen dataclasses. A task can be pickled for a worker.
 
-    An answer is stale when a source file of this suite changes.
+    The fields of a task identify its answer. An answer is stale when a source file of this suite changes.
     """
 
-    seconds: ClassVar[float] = 1.0  # Estimated CPU time, if it does not depend on the fields.
-    words: ClassVar[str] = "{0!r}"  # Format string of the label; {0} is the task.
+    seconds: ClassVar[float] = 1.0  # Estimated CPU time if it does not depend on the fields.
+    words: ClassVar[str] = "{0!r}"  # Format string of the label, in which {0} is the task.
 
     @property
     def cost(self) -> float:
-        """Estimated CPU time [s], which does not depend on the machine."""
+        """Estimated CPU time [s]. The estimate does not depend on the machine."""
         return self.seconds
 
     @property
@@ -76,11 +76,11 @@ class Task(ABC):
 
     @abstractmethod
     def run(self) -> Values:
-        """Name -> float64 array or text. Raises Unsupported, or ValueError for invalid input."""
+        """Name -> float64 array or text. Raises Unsupported and ValueError."""
 
     @cached_property
     def key(self) -> str:
-        """A digest of everything on which the answer depends: a stored answer with the same key is valid."""
+        """A digest of everything that affects the answer. A stored answer with the same key is valid."""
         parts = ("task", type(self).__qualname__, repr(self), fingerprint(self, folders=OURS))
         return digest("\0".join(parts), LONG)
 
@@ -110,12 +110,12 @@ class Motion(Task):
 
 
 def trajectory_of(answer: Answer) -> Trajectory:
-    """The trajectory in the answer to a Motion. Raises KeyError for another answer."""
+    """The trajectory in the answer to a Motion. Raises KeyError for any other answer."""
     return Trajectory(answer.array("t"), answer.array("pose"), answer.array("twist"), answer.array("reaction"))
 
 
 def answered(task: Task) -> Answer:
-    """Run a task in this process. Refusals become outcomes; other exceptions are raised, and the pool records them."""
+    """Run a task in this process. Refusals become outcomes. Other exceptions are raised."""
     with np.errstate(all="ignore"):
         try:
             with spending("tasks"):
