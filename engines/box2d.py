@@ -1,35 +1,34 @@
 """Box2D v3 under test, by its binding pyb2d3: soft joints in single precision, solved by impulses in sub-steps.
 
-The mass, centre and inertia of a dynamic body are set directly. It never sleeps and has no shape, so there are no
+The adapter sets the mass, centre and inertia of a dynamic body directly. Bodies have no shape, so there are no
 contacts. A Pin is a revolute joint, a Weld is a weld joint, and a Rod is a distance joint. A Slot is a wheel joint
 without its spring, or a prismatic joint if a Drive of rate zero keeps the angle. A Drive is the motor of the Pin or
 Slot between the same two bodies, with a torque limit that is never reached. The stiffness of the engine's springs
-depends on the effective mass and so on the pose. Therefore our code evaluates springs, dampers, forces and torques
-before each step and applies forces to the bodies, as users do.
+depends on the effective mass, which depends on the pose. Therefore our code evaluates all force elements before each
+step and applies the forces to the bodies.
 
 One step (its solver.c) has `substeps` sub-steps of h = dt / substeps. A sub-step applies forces, corrects the
-velocities once for every joint with a soft term against its gap, integrates the poses (p += v h), and corrects the
-velocities again without the soft term. The state belongs to its instant, and the motion is that of the semi-implicit
-Euler method with the step h.
+velocities with a soft term against the gaps, integrates the poses (p += v h), and corrects the velocities again without
+the soft term. The motion is that of the semi-implicit Euler method with the step h.
 
-A joint is a spring with a damping ratio of 2, solved implicitly (b2MakeSoft in its solver.h). Its frequency is 60 Hz,
-or a quarter of the rate of sub-steps if that is less. Frequency w and ratio z give the velocity w / (2 z + h w) times
-the gap, times h w (2 z + h w) / (1 + h w (2 z + h w)). This velocity is removed after the integration, so that a gap
-closes at the rate w^2 h with w^2 = 1.4e5 / s^2, more slowly for a shorter sub-step. The error that opens the gap falls
-with h too. Therefore no order is declared.
+A joint is a spring with a damping ratio of 2, which the engine solves implicitly (b2MakeSoft in solver.h). Its
+frequency is 60 Hz, or a quarter of the rate of sub-steps if that is less. For a spring of angular frequency w and
+damping ratio z, the soft term is the velocity w / (2 z + h w) * gap * s / (1 + s) with s = h w (2 z + h w). The second
+correction removes this velocity, so a gap closes at the rate w^2 h with w^2 = 1.4e5 / s^2. A shorter sub-step h closes
+a gap more slowly, but it also opens a smaller gap. Therefore no order is declared.
 
-pyb2d3 0.11.1 has no function for the frequency of joints (`b2World_SetJointTuning`). But a weld joint has frequencies
-of its own, which the second correction includes. With `closing`, a Pin without a drive is a weld joint with almost no
-angular stiffness (SLACK), and the points of Pins, Rods and Welds have the frequency closing / h. The engine's maximum
-for contacts is closing = 1/4; at 1/2 a chain of ten pins diverges. Such a stiff pin turns the rounding of positions
-into forces, so that the noise of reactions is larger for shorter steps. The page of engines shows the effect of the
-frequency and of sub-steps.
+pyb2d3 0.11.1 has no function for the frequency of joints (`b2World_SetJointTuning`). But a user can set the frequencies
+of a weld joint. With `closing`, a Pin without a drive is a weld joint with almost no angular stiffness (SLACK), and the
+points of Pins, Rods and Welds have the frequency closing / h. For contacts the engine permits at most closing = 1/4.
+With closing = 1/2 a chain of ten pins diverges. A stiff pin turns the rounding of positions into forces, so shorter
+steps have noisier reactions. The page `engines` shows the effect of the frequency and of sub-steps.
 
-A body turns by at most an eighth of a turn in a step: the engine reduces a larger rate, and the run has a warning.
+The engine reduces a rate above an eighth of a turn per step, and the run then has a warning.
 
-The engine uses single precision. Errors below about 1e-6 of the motion, and accelerations below 1e-7 of the speed over
-the step, are rounding. The engine's functions for angles and rotations have errors of 1.6e-3 and 3e-5 rad, so this
-adapter computes both itself. It also restores whole turns, which a rotation does not contain.
+The engine uses single precision. Errors of positions below about 1e-6 of the motion are rounding. Errors of
+accelerations below 1e-7 of the speed divided by the step are rounding too. The engine's functions for angles and for
+rotations have errors of 1.6e-3 and 3e-5 rad, so this adapter does not use them. The adapter also counts whole turns,
+which a rotation does not contain.
 """
 
 from __future__ import annotations
@@ -52,27 +51,28 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-# CPU times [s]: a step of three bodies without its sub-steps, a sub-step, and the force elements in numpy.
+# CPU times [s] of a step of three bodies without its sub-steps, of a sub-step, and of the force elements in numpy.
 BOX2D_STEP_COST = 3e-6
 SUBSTEP_COST = 0.8e-6
 NUMPY_FORCES_COST = 150e-6
-# The shortest distance of a joint [m].
+# The shortest length that the engine permits for a distance joint [m].
 SLOP = 0.005
-# The largest torque of a motor [N m]; the largest number of single precision is 3e38.
+# The torque limit of a motor [N m]. It is below the largest number in single precision, 3e38.
 MOTOR_TORQUE = 1e30
-# The engine's limit on speeds [m/s], 400 as shipped. The square must be a number of single precision.
+# The engine's limit on speeds [m/s], 400 as shipped. Its square must be finite in single precision.
 SPEED_LIMIT = 1e18
-# The largest rotation of a body in a step [rad]. The engine reduces larger rates, and the binding can't prevent this.
+# The largest rotation of a body in a step [rad]. The engine reduces a larger rate, and the binding has no setting for
+# it.
 TURN_LIMIT = math.pi / 4
-# Angular frequency of a weld joint in place of a pin, relative to that of its points. Its effect on the body is below
-# rounding in any number of steps. The value 0 would mean the largest stiffness.
+# Angular frequency of a weld joint that replaces a pin, relative to the frequency of its points. The angular spring has
+# an effect below rounding. The value 0 would mean the largest stiffness.
 SLACK = 4e-9
 RATE_CUT = RunWarning("upstream: a rate was cut to an eighth of a turn in a step", "rate limit", "upstream")
 JOINT_LIST = "https://box2d.org/documentation/group__joint.html"
 
 
 class Box2DWorld:
-    """The engine's objects for one mechanism; `hertz` is the frequency of joints, or 0 for joints as shipped."""
+    """A mechanism in a world of Box2D; `hertz` is the frequency of joints [Hz], or 0 for the frequency as shipped."""
 
     def __init__(self, mechanism: Mechanism, dt: float, substeps: int, hertz: float) -> None:
         import pyb2d3
@@ -90,7 +90,7 @@ class Box2DWorld:
         self.size = Size(count, 3 * count, rows, rows)
 
     def _motors(self) -> dict[frozenset[str | None], Drive]:
-        """The drive of each pair of bodies; raises Unsupported for a drive between bodies without pin or slot."""
+        """The drives by pair of bodies; raises Unsupported for a drive between bodies without a pin or slot."""
         joints = self.mechanism.joints
         held = {frozenset((joint.first, joint.second)) for joint in joints if isinstance(joint, Pin | Slot)}
         drives = [joint for joint in joints if isinstance(joint, Drive)]
@@ -149,10 +149,6 @@ class Box2DWorld:
         return self.world.create_wheel_joint(**self._ends(joint), **motor, local_axis_a=line, enable_spring=False)
 
     def _take_motor(self, joint: Pin | Slot) -> tuple[Drive | None, float, dict[str, Any]]:
-        """The drive between the joint's bodies, its sign, and the settings of a motor.
-
-        Of two joints between the same bodies the first has the motor.
-        """
         drive = self.motors.pop(frozenset((joint.first, joint.second)), None)
         if drive is None:
             return None, 1.0, {}
@@ -161,10 +157,6 @@ class Box2DWorld:
         return drive, sign, {"enable_motor": True, "motor_speed": speed, "max_motor_torque": MOTOR_TORQUE}
 
     def _weld(self, ends: dict[str, Any], turning: float, **further: float) -> Any:
-        """Create a weld joint with the frequencies `hertz` of its points and `turning` of its angle [Hz].
-
-        0 is the stiffest value.
-        """
         frequencies = {"linear_hertz": self.hertz, "linear_damping_ratio": 1.0, "angular_hertz": turning}
         return self.world.create_weld_joint(**ends, **{**frequencies, "angular_damping_ratio": 1.0, **further})
 
@@ -212,7 +204,7 @@ BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
     Slot: Box2DWorld.add_slot,
     Rod: Box2DWorld.add_rod,
     Weld: Box2DWorld.add_weld,
-    Drive: lambda world, drive: None,  # it is the motor of a pin or slot
+    Drive: lambda world, drive: None,  # a pin or slot has the motor
 }
 
 
@@ -220,8 +212,8 @@ BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
 class Box2D(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    substeps: number of sub-steps in a step, 4 as in the engine's manual
-    closing: the frequency of pins, welds and rods times the length of a sub-step; 0 for joints as shipped
+    substeps: number of sub-steps in a step; the engine's manual recommends 4
+    closing: frequency of pins, welds and rods times the sub-step h; 0 for the frequency as shipped
     """
 
     name = "box2d"
@@ -229,7 +221,7 @@ class Box2D(ExtraEngine):
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Enforcement] = "ours"
     precision: ClassVar[float] = 2.0**-23
-    angle_error: ClassVar[float] = 2.8e-5  # of the polynomial b2Atan2 (math_functions.h), for the angle of a weld
+    angle_error: ClassVar[float] = 2.8e-5  # error of b2Atan2 (math_functions.h) in the angle of a weld
     capability: ClassVar[Capability] = Capability(
         "box2d",
         BOX2D_JOINTS,

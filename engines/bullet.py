@@ -1,22 +1,22 @@
 """Bullet under test, by its binding PyBullet: a tree in reduced coordinates, with loops closed by impulses at points.
 
-The wheels of PyBullet are built in double precision, up to Python 3.11.
+PyBullet has wheels up to Python 3.11, which compute in double precision.
 
-The tree is that of `engines.tree`. It is loaded from a URDF file, since PyBullet has no other way to set a link's
-inertia. It has continuous joints, prismatic joints for slots with a fixed angle, and fixed joints for welds. A Pin that
-closes a loop is a JOINT_POINT2POINT, and such a Weld is a JOINT_FIXED. A Drive is the velocity motor of a joint. A Gear
-is a JOINT_GEAR between two joints of the tree. A body that slides and turns, or that has no joint, is refused: it would
-need links of mass zero, which this adapter does not create. Our code evaluates force elements before each step, as
-users do, and passes them to the engine as external forces. All damping and the limit on joint velocities are off.
+`engines.tree` makes the tree, and PyBullet loads it from a URDF file, since it has no other way to set a link's
+inertia. In the tree a Pin is a continuous joint, a Slot with a fixed angle is a prismatic joint, and a Weld is a fixed
+joint. A Pin that closes a loop is a JOINT_POINT2POINT, and a Weld that closes a loop is a JOINT_FIXED. A Drive is the
+velocity motor of a joint. A Gear is a JOINT_GEAR between two joints of the tree. The adapter refuses a body that slides
+and turns, and a body without joints, since they need links of mass zero. Our code evaluates force elements before each
+step and passes them to the engine as external forces. The engine's damping is off.
 
-One step (btMultiBodyDynamicsWorld) applies the forces at the old positions and corrects the velocities by impulses,
-which also reduce the gap (by the share erp in a step, 0.2 as shipped). Then it integrates the positions with the new
-velocities. This is the semi-implicit Euler method of first order. Accelerations are changes of velocity over the last
-step, so they are unknown at t = 0.
+One step (btMultiBodyDynamicsWorld) applies the forces at the old positions and corrects the velocities by impulses. In
+a step the impulses also close the share `erp` of a gap, 0.2 as shipped. Then the engine integrates the positions with
+the new velocities. This is the semi-implicit Euler method, which has order 1. Accelerations are changes of velocity
+over the last step, so they are unknown at t = 0.
 
-A joint whose articulated inertia is below 2.2e-16 (SIMD_EPSILON) in the model's units, for example that of a
-millimetre-sized body in SI, is not accelerated by any force (btMultiBody.cpp). A motor has no effect on a joint whose
-inertia is above 1 / SIMD_EPSILON = 4.5e15 (btMultiBodyConstraint.cpp). Runs of such models have a warning.
+No force accelerates a joint whose articulated inertia in the model's units is below SIMD_EPSILON = 2.2e-16
+(btMultiBody.cpp). A motor has no effect on a joint whose inertia is above 1 / SIMD_EPSILON = 4.5e15
+(btMultiBodyConstraint.cpp). The adapter warns about both cases.
 """
 
 from __future__ import annotations
@@ -43,21 +43,22 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-# The largest force [N] or torque [N m] of a loop's point or a motor. It is never reached.
+# The force limit [N, N m] of loop-closing constraints and motors. No constraint reaches it.
 MAX_FORCE = 1e30
-# The engine's limit on the rate of a joint [rad/s]. It is never reached.
+# The engine's limit on the rate of a joint [rad/s]. No joint reaches it.
 RATE_LIMIT = 1e9
-# CPU time of a step of three bodies as shipped [s], and of an iteration for one row.
+# CPU time [s] of a step of three bodies with the settings as shipped. The second value is for one iteration over one
+# row.
 BULLET_STEP_COST = 9e-6
 ITERATION_COST = 0.1e-6
 SHIPPED_ITERATIONS = 50
 SHIPPED_ERP = 0.2
-# SIMD_EPSILON of the engine, which replaces the inverse of a smaller inertia [kg, kg m^2] by zero.
+# SIMD_EPSILON of the engine [kg, kg m^2]. The engine replaces the inverse of a smaller inertia by zero.
 SMALLEST_INERTIA = float(np.finfo(float).eps)
 UNMOVED = unresolved(0.0, "bullet takes an inertia below 2.2e-16 for none and moves it by no force")
 UNTURNED = unresolved(0.0, "a motor of bullet does nothing to an inertia above 4.5e15")
 ORIGIN = [0.0, 0.0, 0.0]
-# The engine's constraint for a joint that closes a loop; "" for joints that are never such a constraint.
+# The engine's constraint for a joint that closes a loop. A joint with "" closes no loop.
 BULLET_JOINTS = {Pin: "JOINT_POINT2POINT", Weld: "JOINT_FIXED", Slot: "", Drive: "", Gear: ""}
 
 
@@ -66,8 +67,8 @@ class Bullet(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     iterations: largest number of the solver's iterations over the rows
-    residual: the solver ends below this residual
-    erp: the share of a gap that a step closes
+    residual: tolerance of the solver's residual
+    erp: share of a gap that a step closes
     """
 
     name = "bullet"
@@ -92,10 +93,10 @@ class Bullet(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """Order 1 of the semi-implicit Euler method; joints of the tree are exact.
+        """Order 1, since the method is semi-implicit Euler; joints of the tree have no gap.
 
-        Not declared for loops in a prescribed motion: their only error is the slip at which the iterations end, and it
-        does not depend on the step.
+        No order is declared for loops in a prescribed motion. Their only error is the slip at which the iterations end,
+        and that slip does not depend on the step.
         """
         loops = spanning_tree(mechanism).loops
         if loops and is_prescribed(mechanism) and self.residual:
@@ -115,7 +116,7 @@ class Bullet(ExtraEngine):
         return BULLET_STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
 
     def stricter(self, mechanism: Mechanism) -> Bullet | None:
-        """The method with twenty times as many iterations; None without rows for the solver."""
+        """The method with twenty times as many iterations; None if no joint is a row of the solver."""
         if not spanning_tree(mechanism).loops and not any(isinstance(joint, Drive) for joint in mechanism.joints):
             return None
         return replace(self, iterations=20 * self.iterations, residual=0.0)
@@ -127,10 +128,10 @@ class Bullet(ExtraEngine):
 
 
 def inertia_warnings(tree: Tree, motors: Iterable[int]) -> tuple[RunWarning, ...]:
-    """Warnings about inertias that are too small or too large for the engine, at the start.
+    """Warnings about inertias at t = 0 that are too small or too large for the engine.
 
-    The inertia of a joint is Featherstone's articulated inertia, 1 / (M^-1)_jj with M of the coordinates from the joint
-    outwards. The inertia of a motor is 1 / (M^-1)_jj with M of all coordinates.
+    The inertia of coordinate j is 1 / (M^-1)_jj. For a motor, M is the mass matrix of all coordinates. For a joint, M
+    is the mass matrix of the coordinates from the joint outwards, which gives Featherstone's articulated inertia.
     """
     if not tree.coordinates:
         return ()
@@ -154,7 +155,7 @@ def inertia_warnings(tree: Tree, motors: Iterable[int]) -> tuple[RunWarning, ...
 
 
 def motor_rates(tree: Tree) -> dict[int, float]:
-    """The rates [rad/s] of motors by tree coordinate; raises Unsupported for what bullet cannot represent."""
+    """The rates [rad/s] of motors by tree coordinate; raises Unsupported for an element that bullet cannot build."""
     bodies, rates = tree.mechanism.bodies, dict[int, float]()
     for link in tree.links:
         if len(link.columns) > 1:
@@ -175,7 +176,7 @@ def motor_rates(tree: Tree) -> dict[int, float]:
 
 
 def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
-    """The tree coordinates of the angles of the second and first body; raises Unsupported."""
+    """The tree coordinates of the second and the first angle; raises Unsupported for a sum of coordinates."""
     coordinates = [tree.turning(None, name) for name in (gear.second, gear.first)]
     if any(len(columns) != 1 for columns in coordinates):
         raise Unsupported(
@@ -188,14 +189,14 @@ def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
 
 @cache
 def package() -> Any:
-    """The package; importing it prints a line, which is discarded."""
+    """Import pybullet without the line that the import prints."""
     with quiet():
         import pybullet
     return pybullet
 
 
 class BulletWorld:
-    """The engine's objects for one mechanism, in a separate server in this process."""
+    """A mechanism in a physics server of its own in this process."""
 
     def __init__(self, tree: Tree, motors: dict[int, float], dt: float, parameters: dict[str, float]) -> None:
         """`motors`: rates [rad/s] by tree coordinate; `parameters`: parameters of the engine by name."""
@@ -212,13 +213,13 @@ class BulletWorld:
         infos = [self._call("getJointInfo", self.body, index) for index in range(self._call("getNumJoints", self.body))]
         names = [info[1].decode() for info in infos]
         self.links = [names.index(f"joint {link.body}") for link in tree.links]
-        # A moving link has one coordinate, so these links are in the order of the coordinates.
+        # Each moving link has one coordinate, so the list is in the order of the coordinates.
         self.moving = [index for link, index in zip(tree.links, self.links, strict=True) if link.columns]
         self._start()
         for loop in tree.loops:
             self._close(loop)
         gears = [joint for joint in self.mechanism.joints if isinstance(joint, Gear)]
-        for gear in gears:  # the rate of the second body's joint less `ratio` times that of the first's is zero
+        for gear in gears:  # second rate - ratio * first rate = 0
             second, first = (self.moving[column] for column in geared_columns(tree, gear))
             self._constrain(second, first, self.bullet.JOINT_GEAR, ORIGIN, ORIGIN, gearRatio=-gear.ratio)
         rows, single = sum(loop.size for loop in tree.loops), len(motors) + len(gears)
@@ -249,7 +250,7 @@ class BulletWorld:
         return "\n".join(['<robot name="mechanism"><link name="ground"/>', *links, "</robot>"])
 
     def _link(self, link: Link) -> str:
-        """The URDF of a link whose frame is at its joint, parallel to the world at the start."""
+        """The URDF of a link; its frame has its origin at the joint and is parallel to the world's frame at t = 0."""
         body = self.mechanism.bodies[link.body]
         parent = "ground" if link.parent is None else f"body {link.parent}"
         x, y = np.array(link.arm) - (0.0 if link.parent is None else self.anchors[link.parent])
@@ -274,7 +275,7 @@ class BulletWorld:
             )
             for name, point in ((loop.first, loop.first_point), (loop.second, loop.second_point))
         ]
-        ends.sort(key=lambda end: end[0] < 0)  # the ground can only be the second
+        ends.sort(key=lambda end: end[0] < 0)  # the engine accepts the ground only as the second body
         (first, first_point), (second, second_point) = ends
         kind = getattr(self.bullet, BULLET_JOINTS[type(loop)])
         self._constrain(first, second, kind, first_point, second_point)
@@ -317,6 +318,6 @@ class BulletWorld:
 
 DEFAULT = Bullet("default")
 TUNED = Bullet("tuned", iterations=200, residual=0.0, erp=1.0)
-# With erp = 1 a step closes the whole gap. With a smaller erp the remaining gap has no error expansion in the step.
+# With erp = 1 a step closes the whole gap. With a smaller erp, the remaining gap is no power series in the step.
 EXTENDED = Extrapolated(TUNED, "extended", levels=(1, 2, 3, 4), powers=(1, 2, 3))
 VARIANTS = (DEFAULT, TUNED, EXTENDED)

@@ -1,4 +1,4 @@
-"""The joints and force elements that an engine builds. Every other kind is refused by name, in one place."""
+"""The joints and force elements that an engine builds. An engine refuses every other kind of element by name."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from reference.mechanism import Mechanism
 class Unsupported(Exception):
     """An engine cannot represent this mechanism; the message is one sentence that says why.
 
-    The refusal of a kind of element has these fields, so that no code reads the sentence. They are "" in all others.
+    If an engine has no element of a kind, the exception has these fields. Otherwise they are "".
 
     engine: the engine's name
     kind: the name of the element's class
     lacking: the reason, without the element's name
-    documentation: the address at which the engine's documentation says that it has no such element
+    documentation: address of the engine's documentation which says that the engine has no such element
     """
 
     def __init__(
@@ -33,8 +33,8 @@ class Unsupported(Exception):
 class Lack:
     """Why an adapter does not build a kind of element.
 
-    `documentation`: the address at which the engine's documentation says that it has no such element; "" if the engine
-    may have one that the adapter does not use.
+    `documentation`: address of the engine's documentation which says that the engine has no such element. It is "" if
+    the engine may have such an element.
     """
 
     reason: str
@@ -45,13 +45,13 @@ class Lack:
 class Capability:
     """The exact classes of joints and force elements that an adapter builds.
 
-    engine: its name in messages
-    joints, forces: tables of constructions by class, or the classes; `forces` is None where our code evaluates every
-        force element by its own law
-    lacks: the reasons against classes that are not built
-    lacks_in_loops: the reasons against joints that are built, but not where they close a loop of the tree
+    engine: the engine's name in messages
+    joints, forces: the classes, or tables of constructions by class; `forces` is None if our code evaluates all force
+        elements
+    lacks: why the adapter does not build a class
+    lacks_in_loops: why the adapter does not build a class of joints that closes a loop of the tree
 
-    A class in none of these is newer than the adapter, which would leave the element out of its model silently.
+    The adapter also refuses a class that has none of these entries.
     """
 
     engine: str
@@ -66,12 +66,12 @@ class Capability:
         return frozenset(kind for kind, lack in self.lacks.items() if lack.documentation)
 
     def require(self, mechanism: Mechanism) -> None:
-        """Raises Unsupported for the first joint or force element that the engine does not build."""
+        """Raise Unsupported for the first joint or force element that the engine does not build."""
         if refusal := self.refusal(mechanism):
             raise refusal
 
     def refusal(self, mechanism: Mechanism) -> Unsupported | None:
-        """The refusal of the first joint or force element that the engine does not build; None if it builds all."""
+        """The refusal of the first joint or force element that the engine does not build, or None."""
         for joint in mechanism.joints:
             if type(joint) not in self.joints:
                 return self._refused("joint", joint, self.lacks)

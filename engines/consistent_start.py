@@ -1,11 +1,10 @@
 """A start that satisfies ideal joints, for a model whose own start does not.
 
-If positions were printed with six digits, joints are open by about a millionth of the length. The start then has the
-nearest positions that close all joints, in the norm of the masses (Newton's method with M^-1 J^T).
+In a file whose positions have six digits, joints are open by about a millionth of the length. Newton's method with M^-1
+J^T then finds the positions that close all joints. They are the nearest ones in the norm of the mass matrix M.
 
-In most scripts of games a motor and its bodies are at rest at t = 0. Ideal joints then change the velocities by an
-impulse. The change is the least in kinetic energy, (v - v0)^T M (v - v0) / 2, subject to J v = rate (Gauss's principle
-for impulses).
+In most scripts of games the bodies on a motor are at rest at t = 0. Ideal joints then change the velocities v0 to v by
+an impulse. By Gauss's principle, v minimises (v - v0)^T M (v - v0) / 2 subject to J v = rate.
 """
 
 from __future__ import annotations
@@ -24,19 +23,19 @@ from reference.mechanism import START_TOLERANCE, Mechanism, open_joint
 from reference.rows import rank
 
 Array = NDArray[np.float64]
-# A message names the rows whose slip is above this share of the largest. A smaller slip is rounding.
+# A message names the rows whose slip exceeds this share of the largest slip. A smaller slip is rounding.
 TAKES_PART = 1e-6
 MOST_NAMED = 4
-# Largest gap of positions that were printed with six digits, in rad or relative to the largest coordinate.
+# Largest gap that rounding to six digits explains, in rad or relative to the largest coordinate.
 PRINTED = 1e-5
-FAR = 100.0  # Largest coordinate for PRINTED, in lengths of the mechanism.
-MOST_ITERATIONS = 20  # Of Newton's method, which converges in three unless a position is singular.
+FAR = 100.0  # Largest coordinate [mechanism's lengths] to which PRINTED is relative.
+MOST_ITERATIONS = 20  # Limit for Newton's method, which needs three iterations at a regular position.
 DIGITS = 1e-6  # Largest rounding of an angle [rad]: a hundredth of the usual tolerance.
-FASTEST = 1e150  # Largest velocity whose square is a floating point number [m/s, rad/s].
+FASTEST = 1e150  # Largest velocity [m/s, rad/s] whose square is a floating point number.
 
 
 class OpenStart(InvalidMechanism):
-    """A joint is open at the start."""
+    """A joint is open at t = 0."""
 
 
 class _AnyStart(Mechanism):
@@ -49,9 +48,8 @@ class _AnyStart(Mechanism):
 def closed_positions(
     bodies: Sequence[Body], joints: Sequence[Joint], gravity: Vector, forces: Sequence[ForceElement]
 ) -> tuple[Array, Note] | None:
-    """The nearest poses (bodies, 3) that close all joints, and a note.
-
-    None if all joints are closed, if one is open by more than PRINTED, or if Newton's method finds no poses so near.
+    """The nearest poses (bodies, 3) that close all joints, and a note about the change. The result is None if all
+    joints are closed, if a joint is open by more than PRINTED, or if Newton's method finds no near poses.
     """
     if not joints:
         return None
@@ -65,7 +63,7 @@ def closed_positions(
     def is_open(pose: Array) -> bool:
         return open_joint(mechanism, gap_at(pose), still, pose, mechanism.twist, size) is not None
 
-    # The gap of a row in displacements of the coordinate that changes it most, in rad or relative to `far`.
+    # A gap is divided by the row's largest derivative; its unit is then rad or the length `far`.
     far = float(np.clip(np.abs(mechanism.pose[:, :2]).max(), size, FAR * size))
     rows = mechanism.rows(mechanism.pose) * np.tile([far, far, 1.0], len(bodies))
     gap = np.abs(gap_at(mechanism.pose)) / np.abs(rows).max(axis=1)
@@ -95,9 +93,9 @@ def closed_positions(
 def with_consistent_start(
     bodies: Sequence[Body], joints: Sequence[Joint], gravity: Vector, forces: Sequence[ForceElement]
 ) -> tuple[Mechanism, tuple[Note, ...]]:
-    """The mechanism with velocities that satisfy its rows, and a note if they differ from those of the bodies.
+    """The mechanism with velocities that satisfy its rows, and a note if the velocities of `bodies` had to change.
 
-    Raises OpenStart for a joint that is open, and InvalidMechanism if no velocities satisfy all rows.
+    Raises OpenStart for an open joint, and InvalidMechanism if no velocities satisfy all rows.
     """
     elements = tuple(joints), gravity, tuple(forces)
     _refuse_without_digits(bodies)
@@ -121,7 +119,7 @@ def with_consistent_start(
 
 
 def _refuse_without_digits(bodies: Sequence[Body]) -> None:
-    """Raise InvalidMechanism for an angle whose rounding exceeds DIGITS, and a velocity above FASTEST."""
+    """Raise InvalidMechanism for an angle whose rounding exceeds DIGITS and for a velocity above FASTEST."""
     rounded = "floating point numbers of that size tell no angle to a millionth of a radian; give a smaller one"
     infinite = "its square, an energy, is no floating point number; give a smaller one"
     for body in bodies:
@@ -134,16 +132,15 @@ def _refuse_without_digits(bodies: Sequence[Body]) -> None:
 
 
 def _least_change(own: Mechanism, slip: Array, pose: Array) -> Array:
-    """The least change of velocities (bodies, 3), in the norm of the masses, that removes the slip (rows,).
-
-    For a gap (rows,) in place of the slip, it is the least change of positions to first order.
+    """The change of velocities (bodies, 3) that removes a slip (rows,) and is least in the norm of the masses. If
+    `slip` is a gap, the result is the change of positions that closes it to first order.
     """
     rows, root = own.rows(pose), np.sqrt(own.inertias.reshape(-1))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
     scale = 1 / np.where(norm > 0, norm, 1.0)
     left, sizes, right = np.linalg.svd(matrix * scale[:, None], full_matrices=False)
-    count = rank(rows, own.length_scale)  # of J without masses, since these do not change the dependence of rows
+    count = rank(rows, own.length_scale)  # masses do not change the rank
     change = np.zeros_like(root)
     for _ in range(2):  # the second iteration reduces the rounding error
         wanted = -(slip + rows @ change) * scale
@@ -152,12 +149,12 @@ def _least_change(own: Mechanism, slip: Array, pose: Array) -> Array:
 
 
 def _per_length(own: Mechanism, slip: Array) -> Array:
-    """Slips (rows,) as rates [1/s]: linear ones are divided by the mechanism's length."""
+    """Slips (rows,) as rates [1/s]; a linear slip is divided by the mechanism's length."""
     return np.where(own.is_angular, slip, slip / own.length_scale)
 
 
 def _contradiction(own: Mechanism, missed: Array) -> str:
-    """The message for rows that no velocities satisfy together; `missed` (rows,) is the least slip [m/s, rad/s]."""
+    """The message for rows that no velocities satisfy together; `missed` (rows,) is the remaining slip [m/s, rad/s]."""
     sizes = np.abs(_per_length(own, missed))
     joints = [joint.name for joint in own.joints for _ in range(joint.size)]
     driven = [name for name, rate in zip(joints, own.rate, strict=True) if rate]

@@ -1,7 +1,4 @@
-"""Accelerations, or velocities after an impulse, that satisfy constraint rows, by Gauss's principle in numpy.
-
-The result is nearest to the free motion in the norm of the masses. Rows may be compliant.
-"""
+"""Gauss's principle in numpy: accelerations, or velocities after an impulse, that satisfy constraint rows."""
 
 from __future__ import annotations
 
@@ -23,19 +20,19 @@ class Constrained:
 
 
 def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: Array | None = None) -> Constrained:
-    """The solution of J a = right - give give^T f and M (a - free) = J^T f for accelerations a and forces f.
+    """Solve J a = right - give give^T f and M (a - free) = J^T f for accelerations a and forces f.
 
     rows (rows, 3 bodies): the Jacobian J
-    give (rows, any number): a factor of the compliance
-    The SVD of J M^(-1/2) is used, not its square. Its rounding error is relative to the largest component of M^(1/2) a,
-    which is too large for a light body. Iterative refinement of both equations reduces it (Skeel 1980).
+    give (rows, any number): factor of the compliance matrix give give^T; None for rigid rows
+    The solution uses the SVD of J M^(-1/2). Its rounding error is relative to the largest component of M^(1/2) a, so it
+    is too large for a light body. Iterative refinement of both equations reduces the error (Skeel 1980).
     """
     if not len(rows):
         return Constrained(free, np.zeros(0))
     root = np.sqrt(inertias.reshape(-1))
     matrix = rows / root
     norm = np.linalg.norm(matrix, axis=1)
-    if give is not None:  # additional coordinates of unit mass on which the forces act
+    if give is not None:  # a compliant row acts on additional coordinates of unit mass
         matrix = np.hstack([matrix, give])
     left, sizes, right_vectors = np.linalg.svd(matrix / norm[:, None], full_matrices=False)
     start, motion, force = free.reshape(-1), np.zeros(len(root)), np.zeros(len(rows))

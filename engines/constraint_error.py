@@ -1,9 +1,8 @@
 """The errors of poses and reactions that follow from the gaps of the joints.
 
-Gaps from an engine's regularisation, or from too few iterations of its solver, hardly depend on the step. Runs at
-several steps agree on them and do not show the error. Near a singular position J M^-1 J^T has an eigenvalue near zero,
-and a small gap means a large displacement. That displacement is the least motion that closes the gap, in the norm of
-the masses.
+Gaps from regularisation, or from too few solver iterations, hardly depend on the step. A comparison of runs at several
+steps does not show them. Near a singular position J M^-1 J^T has an eigenvalue near zero, so that a small gap means a
+large displacement. The displacement is the smallest one in the norm of the masses that closes the gap.
 """
 
 from __future__ import annotations
@@ -17,20 +16,21 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
-# Largest number of instants of a motion at which gaps are evaluated. Large displacements build up over many steps.
+# Largest number of instants of a motion at which gaps are evaluated. Few are enough, since large displacements grow
+# over many steps.
 INSTANTS = 100
-# Largest sum of rows * rows * coordinates over all instants. A mechanism with many rows has fewer instants, and a chain
-# of a hundred links has none, since they would take seconds.
+# Limit on rows * rows * coordinates * instants, since more would take seconds. A chain of a hundred links has no
+# instants.
 WORK = 20_000_000
-# Reactions whose estimated error exceeds this share of the largest force get a warning.
+# A warning is given if the estimated error of reactions exceeds this share of the largest force.
 FORCES = 1e-3
-# Least value of the largest force, as a share of the loads and inertial forces. Smaller reactions are differences of
-# larger forces. If nothing is held, reactions are rounding: about 1e-9 of these forces, in estimates 2e-8.
+# Lower limit of the largest force, as a share of the loads and inertial forces. A smaller reaction is a difference of
+# larger forces. Rounding makes reactions of about 1e-9 of these forces, and estimates of 2e-8.
 LEAST_FORCE = 1e-4
 
 
 def examined_times(mechanism: Mechanism, valid: NDArray[np.bool_]) -> NDArray[np.int_]:
-    """Indices of up to INSTANTS evenly spread times of those that are `valid` (times,); none if they exceed WORK."""
+    """Indices of evenly spread `valid` times (times,); INSTANTS and WORK limit their number."""
     places, rows = np.flatnonzero(valid), mechanism.row_count
     most = min(INSTANTS, WORK // (rows * rows * 3 * len(mechanism.bodies))) if rows else 0
     if most < 2 or not len(places):
@@ -39,12 +39,13 @@ def examined_times(mechanism: Mechanism, valid: NDArray[np.bool_]) -> NDArray[np
 
 
 def closing(mechanism: Mechanism, t: Array, pose: Array, at: Array | None = None) -> Array:
-    """The displacements (instants, bodies, 3) [m, m, rad] that close the gaps of a motion at the instants `at` [s].
+    """The displacements (instants, bodies, 3) [m, m, rad] that close the gaps of a motion at the instants `at` [s], by
+    default at all times.
 
-    Poses (times, bodies, 3) are those at times t [s]; by default the instants are these times. The displacement is
-    -M^-1/2 B^+ gap with B = J M^-1/2. Rows that depend on others to RANK_TOLERANCE, and rows of velocities, add no
-    displacement. It is computed at the `examined_times` and interpolated linearly. From the first pose that is not
-    finite it is constant. If there are no examined times, it is zero.
+    The motion has the poses (times, bodies, 3) at the times t [s]. The displacement is -M^-1/2 B^+ gap with B = J
+    M^-1/2. A dependent row (to RANK_TOLERANCE) or a row of velocities adds no displacement. The displacement is
+    computed at the `examined_times` and interpolated linearly. It is constant from the first pose that is not finite,
+    and zero without examined times.
     """
     at = t if at is None else at
     examined = examined_times(mechanism, np.logical_and.accumulate(np.isfinite(pose).all(axis=(1, 2))))
@@ -72,7 +73,7 @@ def displaced_reaction(mechanism: Mechanism, pose: Array, reaction: Array, moved
 def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array) -> float:
     """The largest reaction in a motion [N]; a torque is divided by the mechanism's length.
 
-    It is at least LEAST_FORCE times the loads and the sum of m v^2 / length.
+    The result is at least LEAST_FORCE times the largest load or sum of m v^2 / length.
     pose, twist (times, bodies, 3); reaction (times, rows)
     """
     length = mechanism.length_scale
@@ -85,7 +86,7 @@ def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Arr
 
 
 def reaction_doubts(mechanism: Mechanism, pose: Array, twist: Array, reaction: Array, error: Array) -> list[RunWarning]:
-    """A warning if the `error` of reactions (times, rows) exceeds FORCES times the `largest_force`, or no warning."""
+    """A warning if the `error` of reactions (times, rows) exceeds FORCES times the `largest_force`."""
     if not mechanism.row_count:
         return []
     arm = np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
