@@ -1,40 +1,39 @@
-"""The contract of an engine under test. The suite uses nothing else of an engine.
+"""The contract of an engine under test. The suite uses only these members of an engine.
 
-1. Write a frozen dataclass that inherits from `Engine`. Its fields are its settings; the report prints them. Settings,
-   steps and counts that are invalid raise ValueError: inherit from `reference.checks.Valid` and decorate `build` and
-   the call of a run with `validated`, so that the engine's own code does not abort the process.
-2. Set `name` and `variant`. Together they name the method in the report. `variant` is any printable string that is not
-   empty. Methods of one `family` share a colour and a marker in charts; the family is the name unless it is overridden.
-3. Set `packages` to the installed packages, of Python or npm, whose versions the numbers depend on. The report prints
-   these versions.
-4. `build(mechanism, dt)` returns a `Run`: the model at t = 0 for steps of dt [s]. It raises `Unsupported`, with one
-   sentence, for a mechanism that the engine cannot represent. No joint or force element may be left out: `capability`
-   is the table of the elements that the engine builds, and `refuse_forces` is for an engine that has only gravity.
-5. `run(samples, every)` takes `samples * every` steps and returns a `Trajectory` of samples + 1 states; state 0 is the
-   start, and state k is that after `k * every` steps. Pose, twist and reaction of a state belong to the same instant.
-   Reactions that the engine does not provide are NaN, at all samples of a row or only at the first. A run is called
-   once.
-6. `Trajectory.stepping` is the CPU time [s] of the stepping loop with the recording of states. It includes pilot runs
-   that choose steps or iterations. It excludes building, and computing results from the recorded states.
+1. Write a frozen dataclass that inherits from `Engine`. Its fields are the engine's settings, which the report prints.
+   Inherit from `reference.checks.Valid`, and decorate `build` and the call of a run with `validated`. Invalid settings,
+   steps and counts then raise ValueError and do not reach the engine's code.
+2. Set `name` and `variant`, which together name the method in the report. `variant` is any printable string that is not
+   empty. Methods of one `family` share a colour and a marker in charts. By default the family is the name.
+3. Set `packages` to the packages of Python or npm whose code computes the numbers. The report prints their versions.
+4. `build(mechanism, dt)` returns a `Run`, which is the model at t = 0 for steps of dt [s]. If the engine cannot
+   represent the mechanism, `build` raises `Unsupported` with one sentence. It must not leave out a joint or force
+   element. `capability` is the table of the elements that the engine builds. An engine that has only gravity calls
+   `refuse_forces`.
+5. `run(samples, every)` takes `samples * every` steps and returns a `Trajectory` of samples + 1 states. State 0 is the
+   start, and the engine reaches state k after `k * every` steps. Pose, twist and reaction of a state belong to the same
+   instant. If the engine does not provide the reactions of a row, they are NaN at all samples, or at the first sample
+   alone. A run can be called only once.
+6. `Trajectory.stepping` is the CPU time [s] of stepping and recording states. It includes pilot runs that choose steps
+   or iterations. It excludes the building of the model and the evaluation of the recorded states.
 7. `Trajectory.warnings` are `RunWarning`s or plain strings. `reset_at` [s] is the time at which the engine reset
-   itself. A method that estimates its error sets `estimate`, and `unresolved_at` [s] to the time from which the
-   estimate exceeds its claim. None of these ends the run. A method without an estimate claims an order, and no
-   accuracy at a step.
+   itself. A method that estimates its error sets `estimate`. From `unresolved_at` [s] on, the estimate exceeds the
+   method's claim. The run continues after all these events. A method without an estimate claims only an order.
 8. `order(mechanism)` returns the expected convergence order of the errors as a `ConvergenceOrder`, which the gate
    checks, or `NotDeclared` with the reason. It depends only on the settings and the mechanism.
-9. `step_cost(mechanism)` returns the approximate CPU time of a step [s]. It decides which small steps are run. It is a
-   formula and not a measurement, so that the same steps are run on every machine.
-10. `enforcement(joint, mechanism)` returns who enforces the joint: "engine" (a joint, contact or coordinate of the
-   engine), "engine, our rows" (the engine's solver with rows that our code writes while it steps) or "ours" (our code
-   alone, between steps of free bodies).
-11. `regularisation(mechanism, dt)` returns the regularisation of the joints by the engine's settings, or None.
-12. `instants`, `stricter`, `precision` and `angle_error` declare the law at one instant, the tolerance of the solver
-   and the rounding. `crosscheck search` compares the engine with these declarations. By default an engine declares no
-   law and no tolerance, and double precision.
+9. `step_cost(mechanism)` returns the approximate CPU time of a step [s], which decides how small steps may be. It is a
+   formula and no measurement, so that all machines run the same steps.
+10. `enforcement(joint, mechanism)` returns which code enforces the joint. "engine" means a joint, contact or coordinate
+   of the engine. "engine, our rows" means the engine's solver with rows that our code writes during the steps. "ours"
+   means that our code alone enforces the joint between steps of free bodies.
+11. `regularisation(mechanism, dt)` returns how the engine's settings regularise the joints, or None.
+12. `instants` declares the law of the joints, `stricter` the solver's tolerance, `precision` and `angle_error` the
+   rounding. `crosscheck search` compares the engine with these declarations. By default an engine declares double
+   precision, but no law and no tolerance.
 
-The entry point of the group `crosscheck.bare_loops` with the engine's name is a function of (engine, mechanism, dt,
-steps). It returns the CPU time [s] of that many steps without any recording, for `crosscheck bench`, and may raise
-`Unsupported`.
+An engine may have an entry point of its name in the group `crosscheck.bare_loops`. The entry point is a function of
+(engine, mechanism, dt, steps). For `crosscheck bench` it returns the CPU time [s] of the steps without any recording,
+or raises `Unsupported`.
 """
 
 from __future__ import annotations
@@ -52,16 +51,16 @@ from reference.joints import Joint
 from reference.mechanism import Mechanism
 from reference.trajectory import RunWarning, Trajectory
 
-# The order of a quantity without discretisation error, such as the gap of a joint in reduced coordinates.
+# The order of a quantity without discretisation error, for example the gap of a joint in reduced coordinates.
 EXACT = math.inf
-# The claim of every method with an error estimate: errors of poses in rad, or relative to the mechanism's length.
+# A method with an error estimate claims this largest error of poses, in rad or relative to the mechanism's length.
 CLAIM = 1e-7
 
 Enforcement = Literal["engine", "engine, our rows", "ours"]
 
 
 def refuse_forces(mechanism: Mechanism, engine: str) -> None:
-    """Raise Unsupported for a mechanism with force elements: for an engine that has no force but gravity."""
+    """Raise Unsupported for force elements, since the engine has no force but gravity."""
     if mechanism.forces:
         force = mechanism.forces[0]
         kind, lacking = type(force).__name__, f"the adapter of {engine} knows no force but gravity"
@@ -69,18 +68,18 @@ def refuse_forces(mechanism: Mechanism, engine: str) -> None:
 
 
 def unresolved(time: float, reason: str) -> RunWarning:
-    """The warning of a run whose error may exceed its claim from `time` [s] on."""
+    """The warning that the error of a run may exceed the claim from `time` [s] on."""
     return RunWarning(f"ours: unresolved from {time:.4g} s on, {reason}", "unresolved", "adapter", time)
 
 
 @dataclass(frozen=True)
 class Size:
-    """The size of a model, to be compared with the mechanism's.
+    """The size of an engine's model.
 
-    bodies: moving bodies
-    coordinates: position coordinates that the engine integrates
-    rows: scalar constraints that the engine enforces by forces
-    solver_rows: rows in the engine's solver, empty ones included
+    bodies: number of moving bodies
+    coordinates: number of position coordinates that the engine integrates
+    rows: number of scalar constraints that the engine enforces by forces
+    solver_rows: number of rows in the engine's solver, including empty rows
     """
 
     bodies: int
@@ -91,12 +90,12 @@ class Size:
 
 @dataclass(frozen=True)
 class Regularisation:
-    """Regularisation of the joints: J a = bias - damping * slip - stiffness * gap - compliance * A * reaction.
+    """Regularised joints: J a = bias - damping * slip - stiffness * gap - compliance * A * reaction.
 
     stiffness [1/s^2], damping [1/s]
-    compliance: relative to A, the row's inverse inertia J M^-1 J^T
-    rows (rows,): the rows of the mechanism that are regularised; all others hold exactly
-    complete: whether the law has `bias`, the term -(dJ/dt) v
+    compliance: factor on A, the row's inverse inertia J M^-1 J^T
+    rows (rows,): whether a row of the mechanism is regularised; the engine satisfies the other rows exactly
+    complete: whether the law contains `bias`, which is -(dJ/dt) v
     """
 
     stiffness: float
@@ -110,12 +109,12 @@ class Regularisation:
 class ConvergenceOrder:
     """Expected convergence order of each error; EXACT (inf) where there is no discretisation error.
 
-    order: of the poses, and of every quantity below that is None
-    rate, gap, slip, energy: of these quantities
-    reaction: of the reactions; NaN where the engine provides none
-    integrator: of the time discretisation alone, where a regularisation that depends on the step sets the other orders
-    differences: reactions are changes of velocity over dt / differences; 0 if the engine provides forces
-    amplified: factor on the rounding of poses, velocities and energies, if several runs are combined
+    order: order of the poses, and of each quantity below whose field is None
+    rate, gap, slip, energy: order of this quantity
+    reaction: order of the reactions; NaN if the engine provides no reactions
+    integrator: order of the integrator alone, if the regularisation depends on the step and determines the other orders
+    differences: 0 if the engine provides forces; otherwise reactions are changes of velocity over dt / differences
+    amplified: factor on the rounding errors of poses, velocities and energies in a combination of runs
     """
 
     order: float
@@ -129,31 +128,31 @@ class ConvergenceOrder:
     amplified: float = 1.0
 
     def of(self, quantity: str) -> float:
-        """The order of a quantity: angle, position, rate, velocity, gap, slip, energy or reaction."""
+        """The order of an angle, position, rate, velocity, gap, slip, energy or reaction."""
         field = {"angle": "order", "position": "order", "velocity": "rate"}.get(quantity, quantity)
         order = getattr(self, field)
         return self.order if order is None else order
 
     def step(self, quantity: str) -> float:
-        """The order of a quantity by the time discretisation alone."""
+        """The order of a quantity that the integrator alone would have."""
         return self.of(quantity) if self.integrator is None else self.integrator
 
 
 @dataclass(frozen=True)
 class NotDeclared:
-    """No order, or no law, is declared; `reason` is one sentence. Errors are then estimated from several step sizes."""
+    """The engine declares no order or no law; `reason` is one sentence."""
 
     reason: str
 
 
 @dataclass(frozen=True, eq=False)
 class Instant:
-    """A result of the engine in one state, and the value that the law of its settings gives.
+    """A result of the engine in one state, and its expected value by the declared law.
 
-    check: "acceleration", "velocity" (after a step), "reaction", or a name of the engine's own for another law
+    check: "acceleration", "velocity" (after a step), "reaction", or another name that the engine chooses
     state: pose and twist (bodies, 3)
     found, expected: (bodies, 3), or (rows,) for reactions
-    scales: arrays of that shape; the error is relative to the largest value in them and in `expected`
+    scales: arrays of the same shape; errors are relative to the largest value in `scales` and `expected`
     """
 
     check: str
@@ -164,7 +163,7 @@ class Instant:
 
 
 class Run(Protocol):
-    """A model that is ready to be stepped once."""
+    """A model at t = 0 that can be run once."""
 
     @property
     def size(self) -> Size: ...
@@ -184,15 +183,15 @@ class OneShot:
 
 
 class Engine(ABC):
-    """The base class of every engine, with the members of the contract and defaults for most of them.
+    """The base class of every engine: the members of the contract, most of which have a default.
 
-    name, variant, packages: see sentences 2 and 3 of the contract
-    modules: modules that are imported when the first mechanism is built, since the import takes seconds
-    build_time: approximate CPU time to build a model [s], if it is more than milliseconds
+    name, variant, packages: see items 2 and 3 of the contract
+    modules: slow modules, which are imported when the first mechanism is built
+    build_time: approximate CPU time to build a model [s]; 0 for a few milliseconds
     precision: relative rounding of the engine's numbers; 0 for double precision
-    angle_error: error of angles that the engine measures between bodies, besides rounding [rad]
+    angle_error: error of the engine's angles between bodies, in addition to rounding [rad]
     forces_by: who evaluates the force elements
-    capability: the table of the joints and force elements that it builds; None for an engine without a table
+    capability: the joints and force elements that the engine builds; None for an engine without such a table
     """
 
     name: str
@@ -217,16 +216,16 @@ class Engine(ABC):
 
     @property
     def missing(self) -> str:
-        """One sentence that says how to install a missing package; empty if nothing is missing."""
+        """One sentence on how to install a missing package; empty if all packages are installed."""
         return ""
 
     @property
     def uses_contacts(self) -> bool:
-        """Whether rolls are contacts of shapes. Rounding then decides whether two shapes in touch have a contact."""
+        """Whether a roll is a contact of shapes. Rounding then decides whether touching shapes have a contact."""
         return False
 
-    def prepare(self) -> None:  # noqa: B027  (most engines have nothing to prepare)
-        """Load or compile what a process needs once, so that it does not count as build time."""
+    def prepare(self) -> None:  # noqa: B027  (an engine without this method prepares nothing)
+        """Load or compile code once per process, before the build time is measured."""
 
     @abstractmethod
     def build(self, mechanism: Mechanism, dt: float) -> Run: ...
@@ -241,35 +240,35 @@ class Engine(ABC):
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement: ...
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """The regularisation of the joints by the settings; None if none is declared."""
+        """How the settings regularise the joints; None if the engine does not declare it."""
         return None
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """Results at the start and in the first `steps` steps of dt [s], with the values by the declared law.
+        """Results at t = 0 and in the first `steps` steps of dt [s], with their expected values by the declared law.
 
-        `built`: the mechanism of the model, if it differs from `mechanism` (in tests, by a deliberate mistake)
+        `built`: the mechanism that the engine builds; tests pass a mechanism with a deliberate mistake
         """
         return NotDeclared("it declares no law of an instant")
 
     def stricter(self, mechanism: Mechanism) -> Engine | None:
-        """The same method with a far smaller solver tolerance; the difference estimates the solver's error."""
+        """The method with a far smaller solver tolerance, for an estimate of the solver's error."""
         return None
 
     def iterations_of(self, mechanism: Mechanism) -> int | None:
-        """The number of Gauss-Seidel iterations over the joints in the first step; None for another solver."""
+        """The number of Gauss-Seidel iterations in the first step; None for an engine without such iterations."""
         return None
 
     def stepped(self, mechanism: Mechanism) -> Engine:
-        """The engine that is stepped: the innermost one of a wrapper."""
+        """The innermost engine of a wrapper; the engine itself if it is no wrapper."""
         return self
 
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
-        """The step of each inner run as a fraction of dt; (1.0,) for an engine without inner runs."""
+        """The steps of the inner runs as fractions of dt; (1.0,) for an engine without inner runs."""
         return (1.0,)
 
 
 def method_name(engine: Engine) -> str:
-    """The name of an engine's variant in every row, table and message."""
+    """The name of an engine's variant in rows, tables and messages."""
     return f"{engine.name} {engine.variant}"

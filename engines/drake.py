@@ -1,32 +1,34 @@
-"""Drake under test: a MultibodyPlant, that is a tree in reduced coordinates, whose loops are constraints of SAP.
+"""Drake under test: a MultibodyPlant has a tree in reduced coordinates, and the solver SAP closes loops.
 
-The tree is that of `engines.tree`: revolute joints about z, prismatic ones along a slot (and a revolute one after a
-body of zero mass if the slotted body turns), planar ones for free bodies, welds. A Pin that closes a loop is
-`AddBallConstraint`, a Rod `AddDistanceConstraint`, a Weld in a loop `AddWeldConstraint`, and a Gear
-`AddCouplerConstraint` between two revolute joints. A Drive is an actuator with `PdControllerGains`, which SAP treats
-implicitly. Our code computes the force elements and passes them as external spatial forces.
+`engines.tree` makes the tree. In the tree a Pin is a revolute joint about z, a Weld is a weld joint, and a free body
+has a planar joint. A Slot is a prismatic joint. If the body in the slot turns, a body of zero mass and a revolute joint
+follow. A Pin that closes a loop is a ball constraint, and a Weld that closes a loop is a weld constraint. A Rod is a
+distance constraint, and a Gear is a coupler constraint between two revolute joints. A Drive is an actuator with
+`PdControllerGains`, which SAP treats implicitly. Our code computes the force elements and passes them as external
+spatial forces.
 
 *default* is a plant in discrete time with the solver SAP (Castro, Permenter and Han, "An Unconstrained Convex
-Formulation of Compliant Contact", 2022). Its step is semi-implicit Euler. SAP replaces the infinite stiffness of a
-constraint by a near-rigid one (`sap_holonomic_constraint.cc`): a step closes half of a gap, and the compliance is
-(0.1 / 2 pi)^2 of the row's inverse inertia. So gaps are of second order in the step, and the error of the angles is
-that of the integrator. The factor 0.1 is a constant of the source code: `set_sap_near_rigid_threshold`, which the
-documentation recommends for contacts that are too soft, changes no digit of these mechanisms, and neither does the
-contact approximation. *extended* extrapolates these runs.
+Formulation of Compliant Contact", 2022). Its integrator is semi-implicit Euler. SAP regularises a constraint
+(`sap_holonomic_constraint.cc`): a step closes half of a gap, and the compliance is (0.1 / 2 pi)^2 of the row's inverse
+inertia. So gaps are of second order in the step, and the integrator determines the error of the angles. The source code
+fixes the factor 0.1. The settings for contacts, `set_sap_near_rigid_threshold` and the contact approximation, have no
+effect on these mechanisms. *extended* extrapolates runs of *default*.
 
 *tuned* is a plant in continuous time with Drake's integrator `runge_kutta5` in fixed-step mode. Such a plant has no
-constraints and no PD gains, so that mechanisms with a loop, a gear or a drive are refused by name.
+constraints and no PD gains, so the adapter refuses mechanisms with a loop, a gear or a drive.
 
 *cenic* is a plant in continuous time with Drake's CenicIntegrator in fixed-step mode, which is of first order too.
-Drake 1.51 accepts welds and couplers there, and 1.58 also ball constraints: a step of the free four-bar then takes 7 us
-instead of 50 us, with nearly the error of SAP. Forces are constant in a step: CENIC would differentiate a system that
-computes them by differences whose size has a unit. What Drake does not accept is refused by name. So are drives, since
-CENIC turns them against the desired rate (1.51 and 1.58), and slots with a body of zero mass, whose numbers it loses.
+In this plant Drake 1.51 accepts weld and coupler constraints, and Drake 1.58 also accepts ball constraints. A step of
+the free four-bar then takes 7 us instead of 50 us, and the error is nearly that of SAP. The adapter keeps forces
+constant during a step, since CENIC would differentiate them with an increment that depends on the unit. The adapter
+passes on Drake's refusal of a constraint. It also refuses drives, since CENIC turns them against the desired rate (1.51
+and 1.58), and bodies of zero mass in slots, since CENIC returns NaN for them.
 
-A constraint with the world's own body ends Drake's process by a segmentation fault (1.51 and 1.58), so the ground is a
+A constraint with the world's body ends the process by a segmentation fault (1.51 and 1.58). Therefore the ground is a
 body that is welded to the world.
 
-The accelerations of *tuned* are the plant's own. Others are changes of velocity over the last step, with none at t = 0.
+The plant computes the accelerations of *tuned*. In the other variants they are changes of velocity over the last step
+and unknown at t = 0.
 """
 
 from __future__ import annotations
@@ -54,13 +56,13 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 Scheme = Literal["discrete", "runge_kutta5", "cenic"]
-# By scheme, CPU time [s] of a step of three bodies, and the evaluations of the force elements in a step.
+# CPU time [s] of a step of three bodies, and number of evaluations of the force elements in a step, by scheme.
 DRAKE_STEP_COSTS = {"discrete": (50e-6, 1), "runge_kutta5": (25e-6, 6), "cenic": (10e-6, 1)}
-# Gain of the rate of a drive, relative to the largest inertia over the step: far beyond SAP's near-rigid limit. Drake
-# refuses zero as the gain of the angle; this one has no effect.
+# Rate gain of a drive, relative to the largest inertia divided by the step. It is far above SAP's near-rigid limit.
+# Drake refuses an angle gain of zero, so ANGLE_GAIN is so small that it has no effect.
 STIFF_RATE = 1e12
 ANGLE_GAIN = 1e-200
-# Limit of a continuous plant's step, relative to dt: between two instants it then takes exactly one step.
+# Limit of the integrator's step relative to dt. A continuous plant then takes exactly one step per dt.
 STEP_LIMIT = 1.5
 
 
@@ -90,7 +92,7 @@ class Drake(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """That of the integrator: 5 for Runge-Kutta, else 1. Joints of the tree are exact; other gaps have order 2."""
+        """The order of the integrator; joints of the tree are exact, and gaps of constraints have order 2."""
         tree = spanning_tree(mechanism)
         differences = 0 if self.scheme == "runge_kutta5" else 1
         if tree.closed and is_prescribed(mechanism):
@@ -120,7 +122,7 @@ def constraints_of(tree: Tree) -> list[Joint]:
 
 
 def refuse_in_continuous_time(tree: Tree, scheme: Scheme) -> None:
-    """Raises Unsupported for what Drake's integrators do not move, or move wrongly."""
+    """Raise Unsupported for elements that Drake's integrators do not accept or compute wrongly."""
     for joint in (*constraints_of(tree), *tree.drives) if scheme == "runge_kutta5" else ():
         raise Unsupported(
             f"joint {joint.name!r}: a plant of drake in continuous time has no constraints and no PD gains"
@@ -141,24 +143,24 @@ class DrakePlant:
 
         self.drake, self.tree, self.mechanism, self.dt, self.scheme = pydrake.all, tree, tree.mechanism, dt, scheme
         self.plant = self.drake.MultibodyPlant(dt if scheme == "discrete" else 0.0)
-        self.plant.set_name("plant")  # by which CENIC finds it
+        self.plant.set_name("plant")  # CENIC finds the plant by this name
         self.plant.mutable_gravity_field().set_gravity_vector([*self.mechanism.gravity, 0.0])
         self.bodies: dict[int | None, Any] = {None: self._add_body("ground", 1.0, 1.0)}
         self.plant.AddJoint(self._weld("ground", self.plant.world_frame(), self.bodies[None].body_frame()))
-        self.joints: list[tuple[Any, range]] = []  # of Drake, with the tree coordinates of each
+        self.joints: list[tuple[Any, range]] = []  # joints of Drake and their tree coordinates
         for link in tree.links:
             self._add(link)
         for joint in constraints_of(tree):
             self._constrain(joint)
         rates = [self._actuate(drive) for drive in tree.drives]
         self.plant.Finalize()
-        self.address = np.empty(tree.coordinates, dtype=int)  # of tree coordinates in Drake's velocities
+        self.address = np.empty(tree.coordinates, dtype=int)  # index in Drake's velocities by tree coordinate
         for joint, columns in self.joints:
             self.address[list(columns)] = joint.velocity_start() + np.arange(len(columns))
         self._simulate()
         velocity = np.zeros(self.plant.num_velocities())
         velocity[self.address] = tree.start_rates()
-        self.plant.SetVelocities(self.context, velocity)  # all positions are zero
+        self.plant.SetVelocities(self.context, velocity)  # positions are zero at t = 0
         if rates:
             port = self.plant.get_desired_state_input_port(self.drake.default_model_instance())
             port.FixValue(self.context, np.array([0.0] * len(rates) + rates))
@@ -167,9 +169,9 @@ class DrakePlant:
         self.size = Size(len(self.mechanism.bodies), tree.coordinates, rows, rows + len(tree.loops))
 
     def _simulate(self) -> None:
-        """Make the diagram and its simulator; raises Unsupported where Drake refuses a constraint."""
+        """Make the diagram and its simulator; raises Unsupported if Drake refuses a constraint."""
         drake, builder = self.drake, self.drake.DiagramBuilder()
-        if self.scheme == "cenic":  # 1.51 asks for a scene graph
+        if self.scheme == "cenic":  # Drake 1.51 requires a scene graph
             drake.AddMultibodyPlantSceneGraph(builder, self.plant)
         else:
             builder.AddSystem(self.plant)
@@ -221,7 +223,7 @@ class DrakePlant:
             self.plant.AddJoint(self._weld(name, parent, child))
 
     def _add_body(self, name: str, mass: float, inertia: float) -> Any:
-        square = inertia / mass  # no motion leaves the plane, so one value serves all axes
+        square = inertia / mass  # the motion is planar, so the other axes have no effect
         unit = self.drake.UnitInertia(square, square, square)
         return self.plant.AddRigidBody(name, self.drake.SpatialInertia(mass, np.zeros(3), unit))
 
@@ -259,7 +261,7 @@ class DrakePlant:
             self.plant.AddBallConstraint(*ends[0], *ends[1])
 
     def _actuate(self, drive: Drive) -> float:
-        """Add the actuator of a drive; its rate [rad/s] in the direction of its joint."""
+        """Add the actuator of a drive and return its rate [rad/s], with the sign of its joint."""
         joint, sign = self._revolute(drive, drive.first, drive.second)
         actuator = self.plant.AddJointActuator(f"drive {drive.name}", joint)
         largest = float((self.mechanism.inertias[:, 0] * self.mechanism.length_scale**2).max())
@@ -275,7 +277,7 @@ class DrakePlant:
         return self.plant.GetVelocities(self.context)[self.address]
 
     def forces(self, position: Array, velocity: Array) -> list[Any]:
-        """Drake's external forces for the force elements, at its positions and velocities."""
+        """The force elements as external forces of Drake, at Drake's positions and velocities."""
         _, pushed = pushes(self.tree, position[self.address], velocity[self.address])
         applied = []
         for index, (x, y, torque) in enumerate(pushed.tolist()):
@@ -296,7 +298,7 @@ class DrakePlant:
         self.simulator.AdvanceTo(self.steps * self.dt)
 
     def _advance(self, count: int) -> bool:
-        """Take steps; True where Drake can't go on."""
+        """Take steps; True if Drake raises an error."""
         try:
             for _ in range(count):
                 self._step()
@@ -326,7 +328,7 @@ class DrakePlant:
 
 
 def _force_elements(model: DrakePlant) -> Any:
-    """A system of Drake from the plant's state to the forces of the force elements."""
+    """A system of Drake that computes the force elements from the plant's state."""
     drake, plant = model.drake, model.plant
 
     class ForceElements(drake.LeafSystem):

@@ -1,4 +1,4 @@
-"""Richardson's extrapolation to zero step from runs of any engine at several steps."""
+"""Richardson's extrapolation to zero step: runs of any engine at several steps are combined."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# If the estimate exceeds the claim, the motion is unresolved from the first time at which the estimate exceeds this
-# share of the claim. The value was fitted together with richardson.LEAST.
+# If the estimate exceeds the claim, `unresolved_at` is the time at which the estimate exceeds this share of the claim.
+# The value was fitted together with richardson.LEAST.
 EARLY = 1 / 30
-# An estimate between these multiples of the claim is decided by one more run (`further_level`).
+# If the estimate is between these multiples of the claim, a further run decides it (`further_level`).
 OPEN = (0.1, 30.0)
-# Factor on the displacement that closes the joints. The displacement was 0.4 to 1.1 of the whole error in 57 motions of
-# random mechanisms, also near singular positions.
+# Factor on the displacement that closes the joints. In 57 motions of random mechanisms, also near singular positions,
+# the displacement was 0.4 to 1.1 of the whole error.
 RELEASED = 1.5
-# All runs may miss the motion of a spring, damper or rod that turns by more than this in a step of the coarsest run
-# [rad].
+# Largest resolved rotation [rad] of a spring, damper or rod in a step of the coarsest run. All runs may miss a faster
+# motion.
 TURNED = 0.5
-# Largest number of body poses that are compared in each run. Nearly every run has fewer and is compared at all steps.
+# Largest number of body poses that are compared in a run. Most runs have fewer poses and are compared at all steps.
 WATCHED = 300_000
 
 
 @runtime_checkable
 class Watched(Protocol):
-    """A run that can compute the reactions at each `each`-th sample alone; they are NaN at the other samples."""
+    """A run that can compute the reactions at every `each`-th sample alone; the other reactions are NaN."""
 
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory: ...
 
@@ -53,7 +53,7 @@ class Watched(Protocol):
 class Settling(Protocol):
     """An engine with a start-up phase.
 
-    An error expansion exists only if the phase lasts the same time at every level.
+    An error expansion exists only if this phase takes the same time at every level.
     """
 
     def settled_for(self, steps: Count) -> Engine: ...
@@ -63,23 +63,24 @@ class Settling(Protocol):
 class Extrapolated(EngineWrapper, Valid):
     """An engine that runs another engine at steps dt / level and extrapolates the runs to zero step.
 
-    A sample is the linear combination of the runs' poses, twists and reactions that is free of errors in the `powers`
-    of the step (L. F. Richardson, 1911). The error of the inner engine has these powers. Their number is one less than
-    that of the `levels`. A sample is NaN if one of the runs is not finite.
+    Poses, twists and reactions are linear combinations of those of the runs (L. F. Richardson, 1911). The combination
+    removes the `powers` of the step from the inner engine's error. There is one power fewer than `levels`. A result is
+    NaN if a run is not finite.
 
-    The `estimate` is the larger of two errors. The first is the `expected_error` from the differences between
-    successive columns of Richardson's table, with the rounding of all steps. The second is the displacement that would
-    close the joints' gaps (`engines.constraint_error`): it shows errors that all runs share. One more run decides if
-    the first is near `engines.CLAIM`, or if the last difference is far smaller than the earlier differences predict.
+    The `estimate` is the larger of two errors. One error is the `expected_error` from the differences in Richardson's
+    table, with the rounding of all steps. The other error is the displacement that would close the joints' gaps
+    (`engines.constraint_error`), since all runs may have the same gaps. A further run decides if the `expected_error`
+    is near `engines.CLAIM`, or if the last difference is far smaller than the earlier differences predict.
 
-    The estimate is computed at the steps of dt and does not depend on the sampling. If it exceeds the claim, the run
-    has a warning, and `unresolved_at` is the time at which the estimate exceeds EARLY of the claim. If a damper stops
-    a motion within one step of the coarsest run, all runs may miss it, and the motion is unresolved from t = 0.
-    Reactions with a large estimate get a warning of their own.
+    The estimate does not depend on the sampling. If it exceeds the claim, the run has a warning, and `unresolved_at` is
+    the time at which the estimate exceeds EARLY times the claim. If a damper stops a motion within one step of the
+    coarsest run, all runs may miss the motion, which is then unresolved from t = 0. The run also has a warning if the
+    estimated error of reactions is large.
 
-    The apparent error of the finest run is its distance from the extrapolation of the two finest runs. If the estimate
-    exceeds it, the runs have no error expansion: for example, one run took another branch at a singular position. From
-    that time on the samples are those of the finest run, and the estimate is its largest distance from another run.
+    The apparent error of the finest run is its difference from the extrapolation of the two finest runs. If the
+    estimate exceeds the apparent error, the runs have no error expansion; for example, a run took another branch at a
+    singular position. From then on the result is the finest run, and the estimate is its largest difference from
+    another run.
     """
 
     engine: Engine
@@ -102,10 +103,10 @@ class Extrapolated(EngineWrapper, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The first power that is not removed; rounding grows by the sum of the weights' absolute values.
+        """The order is the first power that is not removed; rounding grows by the sum of the absolute weights.
 
-        Reactions that are a change of velocity over a step use the steps of the finest run. Their error has additional
-        powers, so the declared order of reactions is only twice the inner order.
+        If reactions are changes of velocity, their error has more powers of the step. Their declared order is therefore
+        only twice the inner order.
         """
         inner = self.engine.order(mechanism)
         if isinstance(inner, NotDeclared):
@@ -115,7 +116,7 @@ class Extrapolated(EngineWrapper, Valid):
                 f"the engine inside has an error of order {inner.order:g} here, and this removes powers "
                 f"from {self.powers[0]} on"
             )
-        # Powers rise evenly: by one, or by two for a method that is symmetric in time.
+        # Powers increase by one, or by two for a method that is symmetric in time.
         rises = [high - low for low, high in pairwise(self.powers)]
         return ConvergenceOrder(
             self.powers[-1] + (rises[-1] if rises else 1),
@@ -129,7 +130,7 @@ class Extrapolated(EngineWrapper, Valid):
         return sum(self.levels) * self.engine.step_cost(mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> None:
-        """None: a regularisation that depends on the step is extrapolated to zero step too."""
+        """None, since a regularisation that depends on the step is extrapolated to zero step."""
 
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
         return tuple(1 / level for level in self.levels)
@@ -140,7 +141,7 @@ class Extrapolated(EngineWrapper, Valid):
 
 
 class ExtrapolatedRun(OneShot):
-    """The built models of all levels; see `engines.Run`."""
+    """A run that combines the runs of all levels; see `engines.Run`."""
 
     def __init__(self, method: Extrapolated, mechanism: Mechanism, dt: float) -> None:
         self._method, self._mechanism, self._dt = method, mechanism, dt
@@ -172,10 +173,10 @@ class ExtrapolatedRun(OneShot):
         return replace(extrapolated, **sampled, stepping=stepping)
 
     def _needs_further_run(self, extrapolated: Trajectory, runs: list[Trajectory]) -> bool:
-        """Whether another run decides the error.
+        """Whether a further run decides the error.
 
-        It does if the estimate is not far from the claim. It also does if the last difference may be small by chance:
-        with the ratio of the two differences before it, it would be near the claim.
+        A further run is needed if the estimate is near the claim. It is also needed if the last difference may be small
+        by chance. Then the ratio of the two earlier differences predicts a difference near the claim.
         """
         low, high = OPEN
         if len(self._levels) < 3 or extrapolated.estimate is None:
@@ -192,7 +193,7 @@ class ExtrapolatedRun(OneShot):
     ) -> Trajectory:
         """The extrapolation of runs with `every` steps of dt between their times.
 
-        Reactions are known at each `stride`-th time. The run `further` decides the estimate.
+        Reactions are known at every `stride`-th time. A run `further` decides the estimate.
         """
         levels, powers = self._levels, self._powers
         weights = extrapolation_weights(levels, powers)
@@ -238,8 +239,8 @@ class ExtrapolatedRun(OneShot):
     def _unresolved_at(self, t: Array, estimate: Array, finest: Array, coarsest: int) -> float | None:
         """The first time [s] at which the error may exceed the claim, or None.
 
-        finest (times, bodies, 3): the poses of the finest run
-        coarsest: the number of steps of the coarsest run between two times
+        finest (times, bodies, 3): poses of the finest run
+        coarsest: number of steps of the coarsest run between two times
         """
         if self._mechanism.applied.dissipate and self._dt / self._levels[0] > self._mechanism.time_scale:
             return 0.0
@@ -250,15 +251,15 @@ class ExtrapolatedRun(OneShot):
 
     def _estimate(self, poses: Array, pose: Array, steps: int) -> Array:
         """Estimated errors (times, bodies, 3) of the extrapolation `pose` of `poses` (levels, times, bodies, 3)."""
-        # The coarsest run may have a larger error in its first step than in later steps: for example, it closes a gap
-        # one step late. If that run alone is wrong, the error of the extrapolation is the whole last difference.
+        # In its first step the coarsest run may have an unusually large error; for example, it closes a gap one step
+        # late. If the coarsest run alone is wrong, the last difference is the whole error of the extrapolation.
         least = np.full(poses.shape[1], LEAST)
         least[: 2 if steps < len(least) else 1] = 1.0
         error = expected_error(poses / self._unit, self._levels, self._powers, least) * self._unit
         return error + self._rounding(pose, steps)
 
     def _rounding(self, pose: Array, steps: int) -> Array:
-        """The rounding errors of all steps: half a unit in the last place of a pose in each, times the weights."""
+        """The sum of the steps' rounding errors, half a unit in the last place of a pose, times the weights."""
         weights = extrapolation_weights(self._levels, self._powers)
         carried = np.abs(weights) @ self._levels * np.finfo(float).eps / 2 * steps
         elapsed = np.linspace(0.0, 1.0, len(pose))[:, None, None]
@@ -266,19 +267,19 @@ class ExtrapolatedRun(OneShot):
             return carried * elapsed * np.maximum(np.abs(pose), self._unit)
 
     def _largest(self, estimate: Array) -> Array:
-        """The largest estimate up to each time (times,) [rad, or lengths of the mechanism]: errors may cross zero."""
+        """The largest estimate up to each time (times,) [rad, mechanism's lengths], since errors may cross zero."""
         with np.errstate(all="ignore"):
             return np.fmax.accumulate((estimate / self._unit).max(axis=(1, 2)))
 
     def _has_no_expansion(self, poses: Array, largest: Array) -> NDArray[np.bool_]:
-        """Whether the estimate exceeds the finest run's largest error up to each time (times,); False for two runs."""
+        """Whether the estimate exceeds the finest run's apparent error up to each time (times,); False for two runs."""
         if len(self._levels) < 3:
             return np.zeros(len(largest), dtype=bool)
         finer = combine(poses[-2:], extrapolation_weights(self._levels[-2:], self._powers[:1]))
         return largest > self._largest(np.abs(finer - poses[-1]))
 
     def _line_rotation(self, pose: Array) -> Array:
-        """The largest rotation of the line of a spring, damper or rod up to the next pose (times,) [rad]."""
+        """The largest rotation of a spring, damper or rod between each pose and the next one (times,) [rad]."""
         mechanism, out = self._mechanism, np.zeros(len(pose))
         for line in (element for element in (*mechanism.forces, *mechanism.joints) if element.acts_along_line):
             along = np.zeros(len(pose), dtype=complex)
@@ -291,11 +292,11 @@ class ExtrapolatedRun(OneShot):
 
 
 def _steps_between_compared(samples: int, every: int, bodies: int) -> int:
-    """The number of steps between two instants that are compared: 1 unless more than WATCHED poses would be stored."""
+    """The number of steps of dt between two compared instants: 1, or more if WATCHED poses would be exceeded."""
     least = max(1, -(-samples * every * bodies // WATCHED))
     return next((count for count in range(least, every) if every % count == 0), every)
 
 
 def _run(run: Run, samples: int, every: int, stride: int) -> Trajectory:
-    """A run with reactions at each `stride`-th sample, since they take longer to compute than the steps."""
+    """A run with reactions at every `stride`-th sample alone, since reactions are slow to compute."""
     return run.watched(samples, every, stride) if isinstance(run, Watched) else run(samples, every)
