@@ -1,4 +1,4 @@
-"""Engines under test. `engines.contract` has the contract of an engine in numbered sentences."""
+"""Engines under test. `engines.contract` lists the contract of an engine in numbered items."""
 
 from engines.contract import (
     CLAIM,

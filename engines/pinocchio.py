@@ -1,28 +1,28 @@
 """Pinocchio under test: a tree in reduced coordinates whose loops are closed by exact contact constraints.
 
-Pinocchio (the package is called `pin`) computes accelerations and has no time stepping (its `integrate` adds a
-displacement to a configuration). The integrators here are our own, semi-implicit Euler and the classical Runge-Kutta
-method of fourth order, as in its examples.
+Pinocchio (the package `pin`) computes accelerations and has no time stepping; its `integrate` only adds a displacement
+to a configuration. Our code integrates by semi-implicit Euler or the classical Runge-Kutta method of order 4, as
+Pinocchio's examples do.
 
-The tree is that of `engines.tree`, with revolute joints about z and prismatic joints along slots. A free body has two
-prismatic joints and a revolute joint. A welded body has no joint; its inertia is added to that of the other body. A Pin
-that closes a loop is a RigidConstraintModel of the type CONTACT_3D, and such a Weld is one of the type CONTACT_6D.
-`constraintDynamics` satisfies their accelerations exactly, so that gaps are errors of the integrator. The proximal
-solver permits their empty rows out of the plane.
+`engines.tree` makes the tree. A Pin is a revolute joint about z, and a Slot is a prismatic joint. A free body has two
+prismatic joints and a revolute joint. A welded body has no joint, and its inertia is added to the other body. A
+RigidConstraintModel closes a loop, of the type CONTACT_3D for a Pin and CONTACT_6D for a Weld. `constraintDynamics`
+satisfies the constraints for accelerations exactly, so gaps are errors of the integrator. The proximal solver permits
+rows out of the plane, which are empty.
 
-The engine has no counterpart of a Drive. In every evaluation our code computes the torque that keeps its rate, from the
-accelerations due to a unit torque at rest without gravity. The engine has no force elements either: our code evaluates
-them, as users do, and passes them as external forces. Accelerations and reactions belong to the sampled instant. A gear
-would be the engine's JointModelMimic, which `constraintDynamics` refuses.
+The engine has no counterpart of a Drive. In every evaluation our code computes the torque that keeps the rate of a
+drive, from the accelerations due to a unit torque at rest without gravity. The engine has no force elements either, so
+our code evaluates them and passes them as external forces. Accelerations and reactions belong to the sampled instant.
+The engine has the gear JointModelMimic, which `constraintDynamics` refuses.
 
 `constraintDynamics` sums forces, and torques about the world's origin, along the tree. Rounding is therefore large for
-a light body on which a heavy body moves, and for a mechanism far from the origin. A body of 2e-7 kg in which 200 kg
-slide has an error of 2e-6 of its motion at 144 m from the origin, at any step. Its angle has an error of 2e-7 rad
-there, and of 4e-11 rad at the origin.
+a light body that carries a heavy body, and for a mechanism far from the origin. For example, a body of 2e-7 kg carries
+a sliding body of 200 kg. At 144 m from the origin its error is 2e-6 of the motion and 2e-7 rad at any step. At the
+origin its error is 4e-11 rad.
 
-As shipped the engine does not reduce the gap of a loop. With a `correction` c [1/s] its Baumgarte gains are c^2 and
-2 c. They multiply the errors of both integrators by a factor above or below 1, depending on the motion and the step, so
-no variant sets them. The page of engines shows them for the free four-bar.
+As shipped the engine does not reduce the gap of a loop. With a `correction` c [1/s] the Baumgarte gains are c^2 and 2
+c. Depending on the motion and the step, the gains increase or reduce the errors of both integrators. Therefore no
+variant sets them. The page `engines` shows their effect on the free four-bar.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4"]
-# Regularisation of the proximal solver. It is far above rounding, since the rows out of the plane are empty.
+# Regularisation of the proximal solver. It is far above rounding because the rows out of the plane are empty.
 PROXIMAL_REGULARISATION = 1e-10
-PROXIMAL_TOLERANCE = 1e-14  # Residual at which the proximal solver ends.
-PROXIMAL_ITERATIONS = 20  # Largest number of its iterations; a four-bar linkage needs two.
-# CPU time [s] of an evaluation with three bodies.
+PROXIMAL_TOLERANCE = 1e-14  # Tolerance of the proximal solver's residual.
+PROXIMAL_ITERATIONS = 20  # Iteration limit of the proximal solver; a four-bar linkage needs two.
+# CPU time [s] of an evaluation of three bodies.
 PINOCCHIO_EVALUATION_COST = 6e-6
-# The engine's constraint for a joint that closes a loop; "" for joints that are never such a constraint.
+# The engine's constraint for a joint that closes a loop. A joint with "" closes no loop.
 PINOCCHIO_JOINTS = {Pin: "CONTACT_3D", Weld: "CONTACT_6D", Slot: "", Drive: ""}
 
 
@@ -62,7 +62,7 @@ class Pinocchio(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     integrator: "euler" (semi-implicit, order 1) or "rk4" (order 4)
-    correction: Baumgarte correction of loops [1/s], see the module
+    correction: Baumgarte correction of loops [1/s]
     """
 
     name = "pinocchio"
@@ -98,7 +98,7 @@ class Pinocchio(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s], with one more evaluation for each drive."""
+        """Approximate CPU time of a step [s]; each drive needs a further evaluation."""
         drives = sum(isinstance(joint, Drive) for joint in mechanism.joints)
         stages = 4 if self.integrator == "rk4" else 1
         evaluation = PINOCCHIO_EVALUATION_COST * (1 + drives) * over_three(mechanism)
@@ -113,7 +113,7 @@ class Pinocchio(ExtraEngine):
 
 
 class PinocchioModel:
-    """The engine's objects for one mechanism."""
+    """A mechanism as a model of Pinocchio."""
 
     def __init__(self, tree: Tree, dt: float, integrator: Integrator, correction: float) -> None:
         import pinocchio
@@ -123,8 +123,8 @@ class PinocchioModel:
         mechanism = self.mechanism
         self.model = pinocchio.Model()
         self.model.gravity.linear = np.array([*mechanism.gravity, 0.0])
-        self.joints: dict[int | None, int] = {None: 0}  # The last joint of each body; the ground is the universe.
-        self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # From the centre of mass to that joint [m].
+        self.joints: dict[int | None, int] = {None: 0}  # The last joint of each body; joint 0 is the universe.
+        self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # From the centre of mass to the last joint [m].
         self.address: list[int] = [0] * tree.coordinates  # Index of each tree coordinate in the engine's vectors.
         self._add_children(None)
         self.data = self.model.createData()
@@ -148,7 +148,7 @@ class PinocchioModel:
         return self.pin.SE3(np.eye(3), np.array([offset[0], offset[1], 0.0]))
 
     def _add_children(self, parent: int | None) -> None:
-        """Add the bodies depth first, as the engine's sparse factorisation of loops requires."""
+        """Add the bodies depth first, since the engine's sparse factorisation requires this order."""
         for link in self.tree.links:
             if link.parent == parent:
                 self._add(link)
@@ -164,13 +164,13 @@ class PinocchioModel:
             kinds = [pin.JointModelPrismaticUnaligned(np.array([*link.direction, 0.0]))]
         kinds += [pin.JointModelRZ()] if link.turns else []
         joint, anchor = self.joints[link.parent], np.array(link.anchor)
-        if not kinds:  # a welded body belongs to the joint of its parent
+        if not kinds:  # a welded body uses the joint of its parent
             anchor, at = anchor - at, (0.0, 0.0)
         for number, (kind, column) in enumerate(zip(kinds, link.columns, strict=True)):
             self.address[column] = self.model.nv
             joint = self.model.addJoint(joint, kind, self._placed(at), f"body {link.body} joint {number}")
             at = (0.0, 0.0)
-        # Inertias about axes in the plane have no effect, but must be positive.
+        # Inertias about the axes x and y have no effect but must be positive.
         inertia = pin.Inertia(body.mass, -np.array([*anchor, 0.0]), body.inertia * np.eye(3))
         self.model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
         self.joints[link.body], self.anchors[link.body] = joint, anchor
@@ -195,7 +195,7 @@ class PinocchioModel:
         return np.array(acceleration)
 
     def acceleration(self, position: Array, velocity: Array) -> Array:
-        """The accelerations of the tree coordinates (coordinates,), with drives at their rates."""
+        """The accelerations (coordinates,) of the tree coordinates, with torques that keep the rates of drives."""
         applied = self._torques(position, velocity)
         free = self._constrained(position, velocity, applied)
         if not len(self.driven):
@@ -207,7 +207,7 @@ class PinocchioModel:
         return free + torques @ responses
 
     def _responses(self, position: Array) -> Array:
-        """Accelerations (drives, coordinates) due to a unit torque of each drive, at rest and without gravity."""
+        """Accelerations (drives, coordinates) due to a unit torque of each drive at rest without gravity."""
         rest, weight = np.zeros(self.tree.coordinates), self.model.gravity.linear.copy()
         self.model.gravity.linear = np.zeros(3)
         correction = self._constrained(position, rest, rest) if self.correction else 0.0
@@ -216,7 +216,7 @@ class PinocchioModel:
         return responses
 
     def _torques(self, position: Array, velocity: Array) -> Array:
-        """Generalised forces of the force elements, as a difference of the engine's static torques."""
+        """Generalised forces of the force elements: the change of the engine's static torques."""
         if not self.mechanism.forces:
             return np.zeros(self.tree.coordinates)
         pin = self.pin
@@ -255,7 +255,7 @@ class PinocchioModel:
         return Recorded(*states, stepping, self._inertias(), np.array(self.model.gravity.linear[:2]))
 
     def _inertias(self) -> Array:
-        """The inertias of the model in the order of bodies; NaN for welded bodies, which the model combines."""
+        """The model's inertias by body; NaN for welded bodies, since the model combines their inertias."""
         inertias = [self.model.inertias[joint] for joint in self.joint_of]
         by_body = np.array([(inertia.mass, inertia.mass, inertia.inertia[2, 2]) for inertia in inertias])
         by_body[[self.joint_of.count(joint) > 1 or joint == 0 for joint in self.joint_of]] = np.nan

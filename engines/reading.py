@@ -1,7 +1,7 @@
-"""The contract of readers: a user's own model as a mechanism, the elements that were left out, and the model itself.
+"""The contract of readers: a reader turns a user's own model into a mechanism.
 
-`crosscheck check` uses nothing else of an engine's reader. A reader is an entry point of the group
-`crosscheck.readers`. It raises `Unsupported`, in a sentence that names the element, for a model that it can't read.
+A reader is an entry point of the group `crosscheck.readers`. `crosscheck check` uses only these members of a reader. If
+a reader cannot read a model, it raises `Unsupported` with a sentence that names the element.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# A check of more bodies takes minutes.
+# Limit on the number of bodies, since a check of more bodies takes minutes.
 MOST_BODIES = 200
 
 
 @dataclass(frozen=True)
 class Note:
-    """An element of the user's model that the mechanism lacks, and why the check goes on without it."""
+    """A difference between the user's model and the mechanism that does not stop the check, with its reason."""
 
     element: str
     reason: str
@@ -34,9 +34,9 @@ class Note:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """An event of the user's model at `t` [s] of a motion that the mechanism lacks, such as a contact.
+    """An event in the user's model at the time `t` [s], such as a contact, that an ideal mechanism does not have.
 
-    `words`: the event, for a message; `remedy`: an alternative to a shorter motion
+    `words`: the event in a message; `remedy`: what the user can do about it
     """
 
     t: float
@@ -46,9 +46,12 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Change:
-    """Documented settings of an engine: a description (`words`), the `lines` to copy, and the step `dt` [s].
+    """Documented settings of an engine.
 
-    `options`: the settings by name, for the model.
+    words: description of the settings
+    dt: step [s]
+    lines: lines that a user can copy
+    options: settings of the model by name
     """
 
     words: str
@@ -59,11 +62,11 @@ class Change:
 
 @dataclass(frozen=True, eq=False)
 class RowRegularisation:
-    """Regularisation of the rows as the engine declares it: J a = bias - damping slip - stiffness gap - compliance F.
+    """Regularised rows by the engine's law: J a = bias - damping slip - stiffness gap - compliance F.
 
-    stiffness (rows,) [1/s^2]; damping (rows,) [1/s]; compliance (rows, rows) [1/kg, 1/(kg m^2)]; all are zero for a row
-    that holds exactly. `initial_bias` (rows,): the value at the start in place of `bias`, for an engine that leaves the
-    bias out; NaN elsewhere.
+    stiffness (rows,) [1/s^2]; damping (rows,) [1/s]; compliance (rows, rows) [1/kg, 1/(kg m^2)]. All are zero for an
+    exact row. If the engine's law omits `bias` in a row, `initial_bias` (rows,) replaces it at t = 0; otherwise it is
+    NaN.
     """
 
     stiffness: Array
@@ -73,7 +76,7 @@ class RowRegularisation:
 
 
 class OwnModel(Protocol):
-    """A user's model with its own settings, which can be run from its start any number of times."""
+    """A user's model with the user's settings, which can be run from t = 0 any number of times."""
 
     @property
     def engine(self) -> str: ...
@@ -84,17 +87,17 @@ class OwnModel(Protocol):
 
     @property
     def assumed(self) -> str:
-        """The values that the reader assumed because the model does not state them, in words; empty if none."""
+        """A description of values that the model does not state and the reader assumed; may be empty."""
         ...
 
     @property
     def settings(self) -> Mapping[str, str]:
-        """The engine's settings in the model, in words."""
+        """Descriptions of the engine's settings in the model."""
         ...
 
     @property
     def declares(self) -> bool:
-        """Whether the engine declares a law of its joints that does not depend on the step."""
+        """Whether the engine declares a law of its joints that is independent of the step."""
         ...
 
     @property
@@ -104,11 +107,11 @@ class OwnModel(Protocol):
 
     @property
     def start_twist(self) -> Array:
-        """The user's velocities at t = 0 (bodies, 3) [m/s, rad/s], which need not satisfy the mechanism's joints."""
+        """The user's velocities at t = 0 (bodies, 3) [m/s, rad/s], which may violate the joints."""
         ...
 
     def start(self) -> Array:
-        """The engine's accelerations at t = 0 (bodies, 3) [m/s^2, rad/s^2], at the mechanism's velocities."""
+        """The engine's accelerations at t = 0 (bodies, 3) [m/s^2, rad/s^2] with the mechanism's velocities."""
         ...
 
     def regularisation(self, gap: Array, pose: Array) -> RowRegularisation:
@@ -116,39 +119,39 @@ class OwnModel(Protocol):
         ...
 
     def without(self, element: str) -> Array:
-        """The accelerations at t = 0 (bodies, 3) with one of `elements` switched off."""
+        """The accelerations at t = 0 (bodies, 3) with this kind of `elements` switched off."""
         ...
 
     @property
     def elements(self) -> Sequence[str]:
-        """The kinds of elements that can be switched off, to find the cause of a difference."""
+        """The kinds of elements that the check can switch off to find the cause of a difference."""
         ...
 
     def obstacles(self, t: Array, pose: Array, twist: Array) -> list[Obstacle]:
-        """The first event of each kind in a motion of poses and twists (times, bodies, 3), in the order of time.
+        """The first event of each kind in a motion with poses and twists (times, bodies, 3), sorted by time.
 
-        Events are all effects that the mechanism lacks: contacts, limits of motions and of forces, and sleep.
+        Events are contacts, limits of motions, limits of forces, and sleep.
         """
         ...
 
     @property
     def suspects(self) -> Mapping[str, str]:
-        """Elements whose law in the engine differs from the ideal law at all steps, with the reason."""
+        """Reasons by element why the engine's law differs from the ideal law at all steps."""
         ...
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        """Documented settings with steps down to `smallest` [s]; the first are the user's settings.
+        """Documented settings with steps down to `smallest` [s], beginning with the user's settings.
 
         `further`: include settings for models that the common settings do not improve.
         """
         ...
 
     def remarks(self, run: Trajectory) -> Sequence[Note]:
-        """The approximations of the reading, with their effect on a run with the user's settings."""
+        """Notes on approximations by the reader, with their effect on a run with the user's settings."""
         ...
 
     def run(self, samples: int, every: int, change: Change | None = None) -> Trajectory:
-        """A run of the user's model: samples + 1 states, `every` of the user's steps apart."""
+        """Run the user's model; successive states (samples + 1) are `every` of the user's steps apart."""
         ...
 
 
@@ -156,8 +159,8 @@ class OwnModel(Protocol):
 class Source:
     """The file of a user's model.
 
-    `changed` returns the bytes of the file with other settings. `read` reads such a file on the same terms. Both raise
-    Unsupported.
+    `changed` returns the bytes of the file with other settings. `read` reads a file on the same terms. Both functions
+    raise Unsupported.
     """
 
     path: Path
@@ -167,7 +170,7 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """The mechanism that a user's model describes, notes on elements that were left out, and the model itself.
+    """A user's model and the mechanism that it describes, with notes on elements that were left out.
 
     `source`: the file of the model, or None if the model was built in Python
     """
@@ -180,17 +183,17 @@ class Reading:
 
     @property
     def jumps(self) -> bool:
-        """Whether the model's velocities violate its joints, so that the ideal motion begins with an impulse."""
+        """Whether the model's velocities violate the joints; the ideal motion then begins with an impulse."""
         return bool(np.any(self.model.start_twist != self.mechanism.twist))
 
 
 @dataclass(frozen=True)
 class ReadingTerms:
-    """The terms on which a user's model is read.
+    """Options for reading a user's model.
 
     without: kinds of elements to switch off in the mechanism and in the user's model
     key: the name or number of a stored state
-    step: a step that replaces the model's [s]
+    step: step [s] that replaces the model's step
     """
 
     without: tuple[str, ...] = ()
@@ -202,24 +205,24 @@ AS_IT_IS = ReadingTerms()
 
 
 class Reader(Protocol):
-    """A reader of the models of one engine, as an entry point of `crosscheck.readers`."""
+    """A reader of one engine's models, as an entry point of `crosscheck.readers`."""
 
     @property
     def words(self) -> str:
-        """The kind of model that this reader reads, for a message."""
+        """The kind of model that this reader accepts, in messages."""
         ...
 
     @property
     def elements(self) -> Mapping[str, str]:
-        """The ideal counterpart of each element of the engine, by the engine's name, for messages and the page."""
+        """The ideal counterpart of an engine's element, by the engine's name of the element."""
         ...
 
     def reads(self, word: str) -> bool:
-        """Whether a word of the command line is a model for this reader."""
+        """Whether a word of the command line names a model for this reader."""
         ...
 
     def read(self, word: str, folder: Path, terms: ReadingTerms) -> Reading:
-        """The reading of a model. Raises Unsupported, or ValueError if the file is no model."""
+        """Read a model; raises ValueError for a file that is no model, and Unsupported."""
         ...
 
 
@@ -228,7 +231,7 @@ def refuse(element: str, reason: str) -> Unsupported:
 
 
 def left_out(element: str) -> str:
-    """The consequence of `--without` for an element that acts in the motion, for a message."""
+    """The message that `--without` changes the motion."""
     return f"--without {element} judges your model without it, which moves otherwise"
 
 
@@ -239,7 +242,7 @@ def refuse_at_start(model: OwnModel, mechanism: Mechanism) -> None:
 
 
 class Names:
-    """A source of unique names for elements of a model, which may have the same name or none."""
+    """A generator of unique names for elements of a model, whose names may be equal or missing."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()

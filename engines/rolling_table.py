@@ -1,12 +1,12 @@
-"""The position of a rolling body as a fast function of one angle.
+"""The position of a rolling body as a fast function of its rotation.
 
-`reference.rolling` computes contacts for arrays of rotations. One call takes longer than a hundred steps of an engine.
-This module has closed forms for two round curves and for a round curve on a line. For any other pair it interpolates
-exact contacts by polynomials in a table.
+`reference.rolling` computes contacts for arrays of rotations. One call of it takes longer than a hundred steps of an
+engine. This module has closed forms for two round curves and for a round curve on a line. For other pairs of curves, a
+table of polynomials interpolates exact contacts.
 
-Vectors are complex numbers x + i y. The body's origin in the frame of the ground is P = point + a, with the arm
-a = r_{O'/C}. Its derivatives by the rotation theta are P' = i a and P'' = s' e_n - a, with s' = ds/dtheta: the velocity
-(18.66) and the acceleration at an angular velocity of 1 rad/s. See `reference.rolling.kinematics` for the symbols.
+Vectors are complex numbers x + i y. The body's origin in the frame of the ground is P = point + a with the arm a =
+r_{O'/C}. The derivatives of P by the rotation theta are P' = i a (18.66) and P'' = s' e_n - a with s' = ds/dtheta.
+`reference.rolling.kinematics` defines the symbols.
 """
 
 from __future__ import annotations
@@ -22,21 +22,23 @@ from engines.remembered import by_identity
 from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 
-# P'' is interpolated at Chebyshev points of a cell. P' and P are integrals of the polynomial, so that rounding errors
-# are not amplified by differentiation. A basis of powers is accurate, because the coefficients fall.
+# P'' is interpolated at the Chebyshev points of a cell. P' and P are integrals of the polynomial, since differentiation
+# would amplify rounding errors. A basis of powers is accurate because the coefficients decrease.
 NODES = 6
 COARSEST = 2 * math.pi / 256
-FINEST = 2 * math.pi / 2**17  # A finer table has more cells than a motion uses.
-CELLS_IN_BLOCK = 16  # Cells that are computed together.
-EXAMINED = np.arange(-32, 32, 4)  # Indices, relative to the cell of the start, of the cells that determine the width.
-# Rotations in a cell as shares of its half width: the middle and the nodes, and the points between nodes.
+FINEST = 2 * math.pi / 2**17  # Width of a cell [rad]; a finer table would have more cells than a motion uses.
+CELLS_IN_BLOCK = 16  # Number of cells that are computed together.
+EXAMINED = np.arange(-32, 32, 4)  # Indices of the cells that determine the width, relative to the first cell.
+# Rotations in a cell as shares of its half width. SAMPLED has the middle and the nodes, COMPARED the points between
+# nodes.
 SAMPLED = np.append(0.0, np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES))
 COMPARED = np.cos(math.pi * np.arange(NODES + 1) / NODES)
-# Sufficient accuracy relative to the largest P'': a few rounding errors of a contact.
+# Sufficient error relative to the largest P''. It corresponds to a few rounding errors of a contact.
 ROUNDING = 1e-14
-# A table with a larger relative error is not used. Exact contacts cost about a hundred times as much.
+# Largest permitted error relative to the largest P''. Otherwise exact contacts are used, which take a hundred times as
+# long.
 POOR = 1e-11
-# Largest rotation [rad]. A diverged motion has rotations at which the spacing of floating point numbers is too coarse.
+# Largest rotation [rad]. In a diverged motion rotations become so large that their rounding is too coarse.
 FARTHEST = 1e9
 
 Place = tuple[complex, complex, complex]
@@ -45,7 +47,7 @@ LOST: Place = (NOWHERE, NOWHERE, NOWHERE)
 
 
 def unplaced(curve: Curve) -> tuple[Curve, complex, float]:
-    """The curve without its displacements, with their total shift [m] as x + i y and total rotation [rad]."""
+    """The curve before all displacements, the total shift [m] as x + i y, and the total rotation [rad]."""
     if not isinstance(curve, Placed):
         return curve, 0j, 0.0
     inner, shift, turn = unplaced(curve.curve)
@@ -55,11 +57,11 @@ def unplaced(curve: Curve) -> tuple[Curve, complex, float]:
 class Rolled(Protocol):
     """A rolling pair as functions of the unwrapped rotation theta [rad] of the body relative to the ground.
 
-    `arm` and `contact` raise ValueError for a rotation that is infinite or beyond the limits of rolling.
+    `arm` and `contact` raise ValueError for a rotation that is infinite or outside the limits of rolling.
     """
 
     def place(self, theta: float) -> Place:
-        """P, P' and P'' [m, m/rad, m/rad^2]; NaN beyond the limits of rolling."""
+        """P, P' and P'' [m, m/rad, m/rad^2]; NaN outside the limits of rolling."""
         ...
 
     def arm(self, theta: float) -> complex:
@@ -67,11 +69,11 @@ class Rolled(Protocol):
         ...
 
     def contact(self, theta: float) -> tuple[complex, complex]:
-        """The contact in the frames of the ground and of the body [m]."""
+        """The contact [m] in the ground's frame, and in the body's frame."""
         ...
 
 
-@by_identity()  # a table takes as long as thousands of steps
+@by_identity()  # making a table takes as long as thousands of steps
 def rolled(rolling: Rolling) -> Rolled:
     ground, body = _round(rolling.ground), _round(rolling.body)
     if body is not None and ground is not None:
@@ -82,7 +84,7 @@ def rolled(rolling: Rolling) -> Rolled:
 
 
 def _round(curve: Curve) -> tuple[complex, float] | None:
-    """Centre [m] and radius [m] of a disc or a hole; the radius of a hole is negative. None for any other curve."""
+    """Centre [m] and radius [m] of a disc or a hole, whose radius is negative; None for another curve."""
     curve, shift, turn = unplaced(curve)
     if isinstance(curve, Circle | Ring):
         return shift + rect(1.0, turn) * complex(*curve.centre), curve.sense * curve.radius
@@ -103,14 +105,14 @@ def _contacts(rolling: Rolling, theta: NDArray[np.float64]) -> tuple[NDArray[np.
 
 
 class RoundOnLine:
-    """A disc on a line: its centre moves along a straight line."""
+    """A disc on a line; the centre of the disc moves along a straight line."""
 
     def __init__(self, rolling: Rolling, body: tuple[complex, float]) -> None:
         self._start = rolling.theta
         self._middle, radius = body
         start = rolling.contact(rolling.theta)
-        self._along = radius * rect(1.0, float(start.tangent_angle))  # Displacement of the centre per radian.
-        self._radius = -1j * self._along  # From the contact to the centre.
+        self._along = radius * rect(1.0, float(start.tangent_angle))  # Displacement of the disc's centre per radian.
+        self._radius = -1j * self._along  # From the contact to the disc's centre.
         self._point = complex(*start.point)
 
     @property
@@ -132,16 +134,18 @@ class RoundOnLine:
 
 
 class RoundOnRound:
-    """A disc or a ring on a disc or in a ring: its centre moves on a circle about the ground's centre.
+    """A disc or a ring on a disc or in a ring; the body's centre moves on a circle about the ground's centre.
 
-    Radii and curvatures of holes are negative. The tangent turns by r_B / (r_A + r_B) per radian of the body.
+    The radii are r_A of the ground and r_B of the body, and the radius of a hole is negative. If the body turns by one
+    radian, the tangent turns by r_B / (r_A + r_B).
     """
 
     def __init__(self, rolling: Rolling, ground: tuple[complex, float], body: tuple[complex, float]) -> None:
         self._start = rolling.theta
         (self._centre, around), (self._middle, radius) = ground, body
         self._turning = radius / (around + radius)
-        # Factors on the tangent: ground's centre to contact, contact to body's centre, ground's to body's centre.
+        # Factors on the tangent of three vectors: centre of the ground to contact, contact to centre of the body, and
+        # their sum.
         self._ground, self._radius, self._between = -1j * around, -1j * radius, -1j * (around + radius)
         self._angle = float(rolling.contact(rolling.theta).tangent_angle)
 
@@ -149,7 +153,7 @@ class RoundOnRound:
     def constants(self) -> tuple[complex, ...]:
         """a, b, c, m, s, t, k of P = a + b e_t - e^(i theta) m and P' = i (c e_t - e^(i theta) m).
 
-        e_t is the tangent, at the angle t + k (theta - s).
+        The unit tangent e_t has the angle t + k (theta - s).
         """
         return self._centre, self._between, self._radius, self._middle, self._start, self._angle, self._turning
 
@@ -171,7 +175,7 @@ class RoundOnRound:
 
 
 class Table:
-    """Any rolling pair, by polynomials in cells of equal width. A cell is computed at its first use."""
+    """Any rolling pair by polynomials in cells of equal width, which are computed at their first use."""
 
     def __init__(self, rolling: Rolling) -> None:
         self._rolling = rolling
@@ -182,11 +186,11 @@ class Table:
         while True:
             self._width, self._per_radian = width, 1 / width
             error = self._error()
-            # If the curvatures of the two curves are nearly equal, exact contacts have large rounding errors, and finer
-            # cells are no better.
+            # If the two curvatures are nearly equal, exact contacts have large rounding errors, which finer cells do
+            # not reduce.
             if error < ROUNDING or width <= FINEST or (error < POOR and error > previous / 4):
                 break
-            # The error is proportional to the power NODES of the width.
+            # The error is proportional to width^NODES.
             halvings = math.ceil(math.log2(error / ROUNDING) / NODES) if error < math.inf else 1
             width, previous = max(width / 2 ** min(halvings, 3), FINEST), error
         self.exact_only = not error < POOR
@@ -218,16 +222,16 @@ class Table:
 
     def contact(self, theta: float) -> tuple[complex, complex]:
         place, once, _ = self.place(theta) if self._low <= theta <= self._high else _exactly(self._rolling, theta)
-        out = 1j * once  # from the origin to the contact
+        out = 1j * once  # from the body's origin to the contact
         return place + out, out * rect(1.0, -theta)
 
     @property
     def width(self) -> float:
-        """Width of a cell [rad]. Cell 0 begins at the rotation 0."""
+        """Width of a cell [rad]; cell 0 begins at theta = 0."""
         return self._width
 
     def cells(self, first: int, count: int) -> NDArray[np.complex128]:
-        """`count` cells from the index `first` (count, 20), see `_fitted`; NaN for cells beyond the limits."""
+        """The cells with the indices from `first` on (count, 20), see `_fitted`; NaN outside the limits."""
         none = (NOWHERE,) * (3 + NODES + 2 * NODES - 1)
         for index in range(first, first + count):
             if index not in self._cells:
@@ -235,14 +239,14 @@ class Table:
         return np.array([self._cells[index] or none for index in range(first, first + count)])
 
     def _cell(self, theta: float) -> tuple[complex, ...] | None:
-        """The cell of a rotation, or None if the exact contact has to be used there."""
+        """The cell of a rotation, or None if the exact contact is needed."""
         index = math.floor(theta * self._per_radian)
         if index not in self._cells and not self.exact_only:
             self._compute_block(index)
         return self._cells.get(index)
 
     def _compute_block(self, member: int) -> None:
-        """Compute the cells of the block that has the cell `member`; None for cells not entirely within the limits."""
+        """Compute the block of cells that contains `member`; a cell that exceeds the limits is None."""
         start = member // CELLS_IN_BLOCK * CELLS_IN_BLOCK
         index = np.arange(start, start + CELLS_IN_BLOCK)
         low, high = index * self._width, (index + 1) * self._width
@@ -254,15 +258,15 @@ class Table:
             )
 
     def _fitted(self, index: NDArray[np.int_]) -> NDArray[np.complex128]:
-        """Each cell's middle, P and P' there, and the coefficients of P'', P' and P (cells, 20)."""
+        """The middle of a cell, P and P' in the middle, and the coefficients of P'', P' and P (cells, 20)."""
         return self._through(index, _contacts(self._rolling, self._at(index, SAMPLED)))
 
     def _at(self, index: NDArray[np.int_], share: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Rotations (cells, shares) [rad] at shares of the half width from the middle of each cell."""
+        """Rotations (cells, shares) [rad] that differ from the middle by shares of the half width."""
         return np.asarray((index[:, None] + 0.5) * self._width + 0.5 * self._width * share, dtype=float)
 
     def _through(self, index: NDArray[np.int_], contacts: tuple[NDArray[np.complex128], ...]) -> NDArray[np.complex128]:
-        """`_fitted` from contacts (cells, 1 + NODES or more), of which the first are those at SAMPLED."""
+        """The result of `_fitted` from contacts (cells, 1 + NODES or more), which begin with those at SAMPLED."""
         place, first, second = contacts
         power = np.arange(NODES)
         powers = np.linalg.inv(np.vander(SAMPLED[1:], increasing=True)) / (0.5 * self._width) ** power[:, None]
@@ -274,7 +278,7 @@ class Table:
         )
 
     def _error(self) -> float:
-        """The largest error of P'' between the nodes of the cells EXAMINED, relative to the largest P''."""
+        """The largest error of P'' between the nodes in the cells EXAMINED, relative to the largest P''."""
         around = EXAMINED + math.floor(self._rolling.theta * self._per_radian)
         inside = (around * self._width >= self._low) & ((around + 1) * self._width <= self._high)
         if not np.any(inside):

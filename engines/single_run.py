@@ -1,4 +1,4 @@
-"""Base classes of engines whose packages are extras, and of their runs."""
+"""Base classes for engines whose packages are extras, and for their runs."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _is_loaded(library: str) -> bool:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Discard the output of native code to file descriptors 1 and 2."""
+    """Discard output to file descriptors 1 and 2, also from native code."""
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     with tempfile.TemporaryFile() as nowhere:
@@ -61,15 +61,15 @@ def quiet() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Recorded:
-    """The engine's states at the samples, in the mechanism's order and frame; NaN after a failure of the engine.
+    """The recorded states, in the mechanism's order of bodies and frame; NaN after the engine fails.
 
     `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are read from the engine's objects.
     """
 
     pose: Array  # (samples + 1, bodies, 3)
     twist: Array
-    acceleration: Array  # NaN for unknown values.
-    stepping: float  # s.
+    acceleration: Array  # NaN if unknown.
+    stepping: float  # CPU time [s].
     inertias: Array
     gravity: Array
     warnings: tuple[RunWarning, ...] = ()
@@ -79,18 +79,18 @@ class SingleRun(OneShot):
     """A run of an extra engine; see `engines.Run`."""
 
     def __init__(self, mechanism: Mechanism, dt: float, size: Size, record: Callable[[int, int], Recorded]) -> None:
-        """`record(samples, every)` steps the model, with steps of dt [s]."""
+        """`record(samples, every)` steps the model by steps of dt [s] and returns the states."""
         self._mechanism, self._dt, self._record = mechanism, dt, record
         self.size = size
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        """Raises ValueError for counts that are no positive whole numbers, and RuntimeError at the second call."""
         self._mechanism.require_room(samples)
         self.begin()
         recorded = self._record(samples, every)
         pose, twist, acceleration = recorded.pose.copy(), recorded.twist.copy(), recorded.acceleration.copy()
-        # An engine in single precision rounds the start.
+        # An engine in single precision rounds the initial state.
         pose[0], twist[0] = self._mechanism.pose, self._mechanism.twist
         valid = np.isfinite([pose, twist]).all(axis=(0, 2, 3))
         lost = int(np.argmin(valid)) if not valid.all() else samples + 1
@@ -113,12 +113,12 @@ class EngineModel(Protocol):
 
 
 class ExtraEngine(Engine, Valid):
-    """The base of an engine whose package is an extra of this project. It can be created without the package.
+    """The base class of an engine whose package is an extra of this project.
 
-    The extra has the engine's name.
-    library: a shared library of Linux that the wheel needs but does not contain, and its package in Debian
-    apart: packages that need a second pip command
-    capability: the elements that the adapter builds
+    The extra has the engine's name. Instances can be created without the package.
+    library: shared library of Linux that the wheel needs but does not contain, and its Debian package
+    apart: second pip command that the engine needs
+    capability: elements that the adapter builds
     """
 
     library: ClassVar[tuple[str, str] | None] = None
@@ -138,7 +138,7 @@ class ExtraEngine(Engine, Valid):
         return f"{self.name} needs the shared library {name}, which is not on this system: apt-get install {package}"
 
     def require(self) -> None:
-        """Raises Unsupported if the package is missing."""
+        """Raise Unsupported if the package is missing."""
         if self.missing:
             raise Unsupported(self.missing)
 
@@ -147,7 +147,7 @@ class ExtraEngine(Engine, Valid):
 
     @abstractmethod
     def model(self, mechanism: Mechanism, dt: float) -> EngineModel:
-        """The engine's objects for steps of dt [s]. Raises Unsupported for settings that the adapter cannot build."""
+        """Make the model for steps of dt [s]; raises Unsupported for settings that the adapter cannot build."""
 
     @validated
     def build(self, mechanism: Mechanism, dt: Positive) -> SingleRun:

@@ -1,4 +1,4 @@
-"""A check of whether the result of a run is a Trajectory as in the contract of engines."""
+"""Check the result of a run against the contract of engines."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
-# Tolerance on sample times, relative to dt: above rounding, far below half a step.
+# Tolerance on sample times relative to dt. It is above rounding and far below half a step.
 TIME_TOLERANCE = 1e-6
 
-Flaw = tuple[str, str]  # the finding; the expectation
+Flaw = tuple[str, str]  # the value found, and the value expected
 
 
 def flaw_of_shapes(run: Any, mechanism: Mechanism, samples: int) -> Flaw | None:
-    """The first field whose shape or type is not that of a Trajectory of samples + 1 states, or None."""
+    """The first field whose shape or type is wrong for samples + 1 states, or None."""
     if not isinstance(run, Trajectory):
         return f"a {type(run).__name__}", "a Trajectory"
     count, motion = samples + 1, (samples + 1, len(mechanism.bodies), 3)
@@ -33,16 +33,16 @@ def flaw_of_shapes(run: Any, mechanism: Mechanism, samples: int) -> Flaw | None:
 
 
 def flaw_of_times(run: Trajectory, dt: float, samples: int, every: int) -> Flaw | None:
-    """The largest difference of the sample times from multiples of every * dt [s], or None if it is rounding."""
+    """The largest difference [s] of the sample times from multiples of every * dt, or None for rounding."""
     error = float(np.max(np.abs(run.t - np.arange(samples + 1) * (every * dt))))
-    rounding_of_sum = (samples * every) ** 2 * np.finfo(float).eps  # relative to dt, if times are summed step by step
+    rounding_of_sum = (samples * every) ** 2 * np.finfo(float).eps  # relative to dt, for a sum of steps
     if error <= max(TIME_TOLERANCE, rounding_of_sum) * dt:
         return None
     return f"an instant that is {error:.3g} s off with {every} steps a sample", f"multiples of {every * dt:g} s"
 
 
 def flaw_of_reactions(run: Trajectory) -> Flaw | None:
-    """The first row whose reactions are known at some of the samples after the first and not at all, or None."""
+    """The first row with unknown reactions at some, but not all, samples after the first, or None."""
     if not (np.isfinite(run.pose).all() and np.isfinite(run.twist).all()):
         return None  # a diverged run may have infinite forces
     known = np.isfinite(run.reaction[1:])
@@ -54,7 +54,7 @@ def flaw_of_reactions(run: Trajectory) -> Flaw | None:
 
 
 def flaw(run: Any, mechanism: Mechanism, dt: float, samples: int, every: int) -> str:
-    """The difference of a result from items 5 and 6 of the contract in one sentence; empty if there is none."""
+    """One sentence on how a result violates items 5 and 6 of the contract; empty if it satisfies them."""
     difference = flaw_of_shapes(run, mechanism, samples) or flaw_of_times(run, dt, samples, every)
     if difference is None and not (math.isfinite(run.stepping) and run.stepping >= 0):
         difference = f"stepping = {run.stepping!r} s", "CPU seconds from 0 on"

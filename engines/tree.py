@@ -1,7 +1,7 @@
 """A mechanism as a tree of planar joints with loop-closing joints, and poses from tree coordinates.
 
-At t = 0 the frame of each body is parallel to the world's, with its origin at the centre of mass. All tree coordinates
-are then zero at the start, so that the mechanism is assembled exactly. Angles are never wrapped.
+At t = 0 the frame of a body is parallel to the world's frame, and its origin is the centre of mass. All tree
+coordinates are zero at t = 0, so the mechanism is assembled exactly. Angles are never wrapped.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from reference.plane import components
 from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
-TreeJoint = Pin | Slot | Weld  # the joints that may connect a link to its parent
+TreeJoint = Pin | Slot | Weld  # joints that can connect a link to its parent
 Connecting = TypeVar("Connecting", bound=TreeJoint)
 
 # CPU time of `pushes` [s].
@@ -32,13 +32,13 @@ TREE_FORCES_COST = 250e-6
 
 @dataclass(frozen=True)
 class Link:
-    """A body in the tree: a pin hinges it on its parent, a slot guides it along a line of its parent, or it is free.
+    """A body in the tree, which is free or has a pin, weld or slot to its parent.
 
-    A weld is a hinge without rotation. A free body has the coordinates x, y and rotation. A hinged body has a rotation.
-    A body in a slot has a displacement along the slot and, if it `turns`, a rotation.
+    A free body has the coordinates x, y and rotation. A hinge is a pin, with a rotation, or a weld, without
+    coordinates. A body in a slot has a displacement along the slot and, if it `turns`, a rotation.
 
-    parent: index of a body, or None for the ground
-    column: index of the first tree coordinate
+    parent: index of the parent body, or None for the ground
+    column: index of the body's first tree coordinate
     arm (x, y) [m]: from the parent's centre of mass, or the world's origin, to the joint at t = 0
     anchor (x, y) [m]: from the body's centre of mass to the joint at t = 0
     direction (x, y): unit vector of the slot's line at t = 0
@@ -55,25 +55,25 @@ class Link:
 
     @property
     def slides(self) -> int:
-        """The number of coordinates that are lengths; they come before the rotation."""
+        """The number of coordinates that are lengths, which precede the rotation."""
         return {"free": 2, "hinge": 0, "slot": 1}[self.kind]
 
     @property
     def columns(self) -> range:
-        """The indices of its tree coordinates."""
+        """The indices of the body's tree coordinates."""
         return range(self.column, self.column + self.slides + self.turns)
 
     @property
     def rotation(self) -> int | None:
-        """The index of its rotation relative to the parent, or None."""
+        """The index of the body's rotation relative to the parent, or None."""
         return self.columns[-1] if self.turns else None
 
 
 @dataclass(frozen=True)
 class Tree:
-    """Links, each parent before its children, and the joints that close loops.
+    """Links, with parents before children, and the joints that close loops.
 
-    kept: drives of rate zero that are satisfied because the tree has no rotation there
+    kept: drives of rate zero between bodies that cannot turn relative to each other in the tree
     """
 
     mechanism: Mechanism
@@ -92,7 +92,7 @@ class Tree:
         return frozenset(names - closing | {drive.name for drive in self.kept})
 
     def holds(self, joint: Joint) -> bool:
-        """Whether the joint is satisfied at all values of the tree coordinates."""
+        """Whether all values of the tree coordinates satisfy the joint."""
         return joint.name in self._held
 
     @cached_property
@@ -108,7 +108,7 @@ class Tree:
     def closes_by(self, joint: Joint) -> bool:
         """Whether a solver needs loop-closing rows for the joint.
 
-        Skates, rolls, and drives of one tree coordinate need none.
+        A skate, a roll, or a drive of a single tree coordinate needs no such rows.
         """
         return joint.name in self._looping
 
@@ -118,7 +118,7 @@ class Tree:
         return bool(self._looping)
 
     def turning(self, first: str | None, second: str | None) -> dict[int, float]:
-        """Coordinates and their factors; the sum is the rotation of the second body relative to the first."""
+        """Factors by coordinate; their weighted sum is the rotation of the second body relative to the first."""
         signs: dict[int, float] = {}
         for name, sign in ((second, 1.0), (first, -1.0)):
             for link in self.path_to_ground(name):
@@ -127,7 +127,7 @@ class Tree:
         return {column: sign for column, sign in sorted(signs.items()) if sign}
 
     def path_to_ground(self, name: str | None) -> Iterator[Link]:
-        """The links from a body to the ground, beginning with that of the body; none for the ground."""
+        """The links from a body to the ground, including the link of the body."""
         body = None if name is None else self.mechanism.body_index(name)
         while body is not None:
             link = self._link_of[body]
@@ -140,23 +140,23 @@ class Tree:
 
     @cached_property
     def drives(self) -> tuple[Drive, ...]:
-        """The drives that the tree does not hold."""
+        """The drives that the tree coordinates do not satisfy by themselves."""
         return tuple(joint for joint in self.mechanism.joints if isinstance(joint, Drive) and joint not in self.kept)
 
     @cached_property
     def geared(self) -> tuple[Drive, ...]:
-        """The drives whose rotation is not that of a single coordinate."""
+        """The drives whose rotation is no single tree coordinate."""
         return tuple(drive for drive in self.drives if len(self.turning(drive.first, drive.second)) != 1)
 
     @cached_property
     def unit_twists(self) -> Array:
-        """The twists (coordinates, bodies * 3) of unit rates of single tree coordinates at the start."""
+        """The twists (coordinates, bodies * 3) at t = 0 due to a unit rate of each tree coordinate."""
         still = np.zeros(self.coordinates)
         twists = [self.instant(still, unit)[1].ravel() for unit in np.eye(self.coordinates)]
         return np.array(twists).reshape(self.coordinates, 3 * len(self.mechanism.bodies))
 
     def start_rates(self) -> Array:
-        """The tree velocities (coordinates,) [m/s, rad/s] of the mechanism's start."""
+        """The rates of the tree coordinates (coordinates,) [m/s, rad/s] at t = 0."""
         twist, rates = self.mechanism.twist, np.zeros(self.coordinates)
         ground = np.zeros(3)
         for link in self.links:
@@ -172,9 +172,10 @@ class Tree:
         return rates
 
     def motion(self, position: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, bodies, 3) of a tree motion (times, coordinates) [m, rad, s].
+        """Poses, twists and accelerations (times, bodies, 3) from tree coordinates and their derivatives (times,
+        coordinates).
 
-        They are NaN at times at which the motion is not finite.
+        Results are NaN at times with a coordinate that is not finite.
         """
         pose, twist, change = np.empty((3, len(position), len(self.mechanism.bodies), 3))
         with np.errstate(all="ignore"):
@@ -186,9 +187,9 @@ class Tree:
         return pose, twist, change
 
     def instant(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Poses and twists (bodies, 3) at tree coordinates and their rates (coordinates,); NaN if any is not finite.
+        """Poses and twists (bodies, 3) from tree coordinates and rates (coordinates,); NaN if a value is not finite.
 
-        It computes with Python floats, which are ten times as fast as `motion` with arrays of one time.
+        Python floats are ten times as fast here as arrays in `motion`.
         """
         if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
             pose, twist = np.full((2, len(self.mechanism.bodies), 3), math.nan)
@@ -200,11 +201,11 @@ class Tree:
         return pose, twist
 
     def _states(self, position: Any, rate: Any, change: Any, cos: Any, sin: Any) -> list[tuple[Any, ...]]:
-        """Of each body: x, y and the rotation since t = 0, with their first and second derivatives.
+        """x, y and the rotation since t = 0 of each body, with their first and second derivatives.
 
-        position, rate, change: of each tree coordinate the value and its derivatives, as floats or arrays of times
-        cos, sin: functions of such values
-        The rotation since t = 0 is used, not the angle, so that the pose at t = 0 is the start to rounding.
+        position, rate, change: tree coordinates and their two derivatives, as floats or arrays of times
+        cos, sin: functions of floats or arrays
+        Rotations begin at zero, so the pose at t = 0 is equal to the mechanism's start up to rounding.
         """
         start = self.mechanism.pose.tolist()
         ground = (0.0,) * 9
@@ -245,19 +246,19 @@ class Tree:
 def pushes(tree: Tree, position: Array, velocity: Array) -> tuple[Array, Array]:
     """Poses (bodies, 3) [m, m, rad], and the loads of force elements on bodies (bodies, 3) [N, N, N m].
 
-    Engines without springs, or with springs of another law, apply these loads before each step. Positions and
-    velocities (coordinates,) are tree coordinates [m, rad] and their rates. If one is not finite, results are NaN.
+    Adapters of engines without such springs apply these loads before each step. position and velocity (coordinates,)
+    are tree coordinates [m, rad] and rates. If a value is not finite, results are NaN.
     """
     pose, twist = tree.instant(position, velocity)
     return pose, np.asarray(tree.mechanism.applied.on(pose, twist), dtype=np.float64)
 
 
 def spanning_tree(mechanism: Mechanism, hanging: bool = True) -> Tree:
-    """The tree of a mechanism, built breadth first from the ground along welds, pins and slots, in this preference.
+    """The tree of a mechanism, built breadth first from the ground along welds, then pins, then slots.
 
-    A body that is not reached is free; without `hanging`, all bodies are. A slot connects a link to its parent only if
-    the parent has the line. A drive of rate zero between the two then removes the rotation. Every other weld, pin or
-    slot closes a loop. The trees of the last mechanisms are cached.
+    A body that the tree does not reach is free. Without `hanging`, all bodies are free. A slot connects a link to its
+    parent only if the parent has the line; a drive of rate zero between the two bodies then removes the rotation. All
+    other welds, pins and slots close loops. The last trees are cached.
     """
     return _tree_of(mechanism, hanging)
 
@@ -295,7 +296,7 @@ def _tree_of(mechanism: Mechanism, hanging: bool) -> Tree:
 def with_parents(
     mechanism: Mechanism, joints: Sequence[Connecting]
 ) -> Iterator[tuple[str, str | None, Connecting | None]]:
-    """The bodies in the order of the tree, each with its parent and the joint between them, or twice None if free."""
+    """Triples (body, parent, joint to the parent) in the order of the tree; a free body has no parent and no joint."""
     placed: set[str | None] = {None}
     joints_of = defaultdict[str | None, list[Connecting]](list)
     for joint in joints:
@@ -314,14 +315,14 @@ def with_parents(
                 child = joint.second if joint.first == parent else joint.first
                 hangs = joint.first == parent or (joint.second == parent and isinstance(joint, Pin | Weld))
                 if hangs and child not in placed:
-                    assert child is not None  # the ground is placed first
+                    assert child is not None  # the ground is never a child
                     placed.add(child)
                     frontier.append(child)
                     yield child, parent, joint
 
 
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:
-    """The vector from a body's centre of mass to one of its points [m], along the world's axes at t = 0."""
+    """The vector [m] from a body's centre of mass to a point of the body, in the world's axes at t = 0."""
     if name is None:
         return point
     x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)

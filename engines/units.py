@@ -1,4 +1,4 @@
-"""A mechanism in other units of mass and time: the motion is the same, the numbers in an engine are not."""
+"""A mechanism in other units of mass and time. The motion is the same, but the engine computes with other numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from reference.mechanism import Mechanism
 
 
 def power_of_two(value: float) -> float:
-    """The power of two nearest to a value. As a unit it causes no rounding."""
+    """The power of two nearest to a value. Such a unit causes no rounding errors."""
     return 2.0 ** round(math.log2(value))
 
 

@@ -16,15 +16,15 @@ def _forwarded(member: str) -> Any:
 
 
 class EngineWrapper(Engine):
-    """An engine that runs another one, `engine`, and forwards its declarations.
+    """The base class of an engine that runs another engine, `engine`, and forwards its declarations.
 
-    A subclass defines `variant` and `build`, and overrides the members in which it differs.
+    A subclass defines `variant` and `build`, and overrides members that differ from those of `engine`.
     """
 
     engine: Engine
 
     def chosen(self, mechanism: Mechanism) -> Engine:
-        """The inner engine that runs this mechanism, which may differ from `engine`."""
+        """The engine that runs this mechanism; a subclass may choose another one than `engine`."""
         return self.engine
 
     name: Any = _forwarded("name")
