@@ -1,4 +1,4 @@
-"""A mechanism as Exudyn's objects: the construction of each kind of joint and force element, and a recorded run."""
+"""A mechanism as a system of Exudyn, and its run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from engines.exudyn import Exudyn
 
 PLANE_NORMAL = [0.0, 0.0, 1.0]
-# Radius of the disc of a skate [m]. It is perpendicular to the plane, so that its radius has no effect.
+# Radius [m] of a skate's disc. The disc is perpendicular to the plane, so its radius has no effect.
 DISC_RADIUS = 0.1
 BELOW_TOLERANCE = unresolved(0.0, "a light body's forces are below what is resolved of the largest")
 GAVE_UP = RunWarning("exudyn: the solver gave up before the end, as Newton's method did not converge", "lost")
@@ -33,10 +33,10 @@ NO_REACTIONS = RunWarning(
 
 
 def resolved_ratio(mechanism: Mechanism) -> float:
-    """The largest mass times the largest inverse mass, with inertias divided by the square of the mechanism's length.
+    """The largest mass divided by the smallest mass or inertia / length^2, with the mechanism's length.
 
-    Newton's tolerance is relative to the forces on the heaviest body. If its product with this ratio is above 1, the
-    error of the lightest body's acceleration may be as large as the largest acceleration.
+    Newton's tolerance is relative to the forces on the heaviest body. If this ratio exceeds 1 / tolerance, the error of
+    the lightest body's acceleration may be as large as the largest acceleration.
     """
     lightest = max(max(1 / body.mass, mechanism.length_scale**2 / body.inertia) for body in mechanism.bodies)
     return max(body.mass for body in mechanism.bodies) * lightest
@@ -47,7 +47,7 @@ def holds_velocities(mechanism: Mechanism) -> bool:
 
 
 class ExudynSystem:
-    """The engine's objects for one mechanism; `length` [m] and `seconds` [s] are their units."""
+    """A mechanism as a system of Exudyn, whose units are `length` [m] and `seconds` [s]."""
 
     def __init__(self, engine: Exudyn, mechanism: Mechanism, dt: float) -> None:
         import exudyn
@@ -61,7 +61,7 @@ class ExudynSystem:
         self.length, self.seconds, self.dt = length, seconds, dt / seconds
         self.mechanism = counted_in(mechanism, mass, seconds)
         self.exudyn, self.items, self.unit = exudyn, itemInterface, np.array([length, length, 1.0])
-        self.container = exudyn.SystemContainer()  # it owns the system
+        self.container = exudyn.SystemContainer()  # the container owns the system
         self.system: Any = self.container.AddSystem()
         self.nodes: dict[str, int] = {}
         self.bodies: dict[str | None, int] = {None: self.system.AddObject(itemInterface.ObjectGround())}
@@ -117,7 +117,7 @@ class ExudynSystem:
         return [self._marker("MarkerNodeCoordinate", nodeNumber=node, coordinate=column) for node, column in angles]
 
     def _start(self, name: str | None) -> float:
-        """A body's angle at the start [rad], where the engine's coordinate is zero; 0 for the ground."""
+        """The angle [rad] of a body at t = 0, at which the engine's coordinate is zero; 0 for the ground."""
         return 0.0 if name is None else self.mechanism.bodies[self.mechanism.body_index(name)].pose[2]
 
     def _couple(self, *names: str | None, **law: Any) -> None:
@@ -145,7 +145,7 @@ class ExudynSystem:
         return 1
 
     def add_slot(self, joint: Slot) -> int:
-        ends = self._ends(joint, rigid=True)[::-1]  # the line belongs to the engine's second marker
+        ends = self._ends(joint, rigid=True)[::-1]  # the engine expects the line at the second marker
         normal = [-math.sin(joint.line_angle), math.cos(joint.line_angle), 0.0]
         settings = {"normalMarker1": normal, "constrainRotation": False}
         self._object("ObjectJointPrismatic2D", markerNumbers=ends, **settings)
@@ -162,7 +162,7 @@ class ExudynSystem:
         return 3
 
     def add_spring(self, force: Spring) -> None:
-        if force.rest_length == 0:  # two springs along x and y, which need no direction
+        if force.rest_length == 0:  # springs along x and y need no direction
             law = {"stiffness": [force.stiffness, force.stiffness, 0.0]}
             self._object("ObjectConnectorCartesianSpringDamper", markerNumbers=self._ends(force), **law)
         else:
@@ -195,7 +195,10 @@ class ExudynSystem:
     def _disc(
         self, ends: list[int], constrained: list[int], radius: float, axle: list[float], normal: list[float]
     ) -> None:
-        """Add a disc at the second marker on a plane at the first; `constrained`: 1 along axle, forwards, upwards."""
+        """Add a disc at the second marker on a plane at the first marker.
+
+        `constrained`: 1 for a constrained velocity along the axle, along the path, and along the normal.
+        """
         plane = {"discRadius": radius, "discAxis": axle, "planeNormal": normal}
         self._object("ObjectJointRollingDisc", markerNumbers=ends, constrainedAxes=constrained, **plane)
 
@@ -206,11 +209,12 @@ class ExudynSystem:
             raise Unsupported(
                 f"joint {joint.name!r}: exudyn's rolling joint is a disc on a plane, and our adapter builds no other"
             )
-        # Material is on the left of a boundary, so the centre of the disc is on the left of its own boundary.
+        # Material is on the left of a boundary, so the disc's centre is on the left of the disc's boundary.
         heading, inward = float(ground.angle(joint.rolling.ground_arc)), float(body.angle(arc)) + math.pi / 2
         (x, y), radius = joint.second_point, 1 / low
         centre = (x + radius * math.cos(inward), y + radius * math.sin(inward))
-        # Only velocities are constrained, so any point of the plane can be used. In a body it must be (0, 0).
+        # Only velocities are constrained, so the marker can be at any point of the plane. In a body it must be at (0,
+        # 0).
         ends = [self._point(joint.first, (0.0, 0.0), True), self._point(joint.second, centre, True)]
         self._disc(ends, [0, 1, 1], radius / self.length, PLANE_NORMAL, [math.sin(heading), -math.cos(heading), 0.0])
         return 3
@@ -254,7 +258,7 @@ class ExudynSystem:
                 stored = np.array(self.system.GetSensorStoredData(sensor)).reshape(-1, 4)[: samples + 1, 1:]
                 states[kind, : len(stored), body], last = stored, len(stored) - 1
         states *= self.unit
-        states[0] += self.mechanism.pose  # coordinates are zero at the start
+        states[0] += self.mechanism.pose  # the engine's coordinates are zero at t = 0
         if gave_up:
             states[:, max(1, last) :] = np.nan
         if holds_velocities(self.mechanism) and not engine.consistent:
@@ -264,7 +268,7 @@ class ExudynSystem:
         return Recorded(states[0], *rates, stepping, loads.inertias, np.array(loads.gravity), tuple(warnings))
 
 
-# Functions that create each kind of joint, and return its number of equations, or force element.
+# Functions that create joints and return the number of equations, and functions that create force elements.
 EXUDYN_JOINTS: Mapping[type, Callable[[ExudynSystem, Any], int]] = {
     Pin: ExudynSystem.add_pin,
     Weld: ExudynSystem.add_weld,

@@ -1,8 +1,7 @@
-"""Whether the imported code of an engine belongs to the release in its distribution's metadata.
+"""Check whether an engine's imported code belongs to the release in the metadata of its distribution.
 
-Versions in reports and cache keys come from metadata. pip overwrites the files of one distribution with those of
-another without a message (`mujoco` 3.17.0 over `mujoco-core`), and the metadata of an editable installation are from
-its first day.
+Versions in reports and cache keys come from metadata. But pip overwrites files of one distribution with those of
+another without a message (`mujoco` 3.17.0 over `mujoco-core`). Also, an editable installation keeps its first metadata.
 """
 
 from __future__ import annotations
@@ -18,15 +17,15 @@ from pathlib import Path
 
 from engines.contract import Engine
 
-# The numbers of a version; the rest names a build, as in 7.3.1+patched.
+# The numbers of a version, without the name of a build as in 7.3.1+patched.
 RELEASE = re.compile(r"v?(\d+(?:\.\d+)*)")
 
 
 def other_release(engines: Iterable[Engine], elsewhere: bool = True) -> str:
     """One line about the first distribution whose version differs from that of its imported module; empty if none.
 
-    A module with unchanged files may have any version: pymunk 7.0.0 contains 2.0.0.
-    `elsewhere`: include modules outside the distribution's folder, in an editable installation or on the path.
+    A module with unchanged files may state any version; pymunk 7.0.0 states 2.0.0.
+    `elsewhere`: also check modules outside the distribution's folder, in an editable installation or on the path.
     """
     packages = {package: engine.modules for engine in engines for package in engine.packages}
     differences = (_difference(package, _modules(package, names), elsewhere) for package, names in packages.items())
@@ -35,7 +34,7 @@ def other_release(engines: Iterable[Engine], elsewhere: bool = True) -> str:
 
 @cache
 def _modules(package: str, names: tuple[str, ...]) -> tuple[str, ...]:
-    """The top-level modules of a distribution by its metadata, or `names`; none if it is not installed."""
+    """The top-level modules in the metadata of a distribution, or else `names`; empty if it is not installed."""
     try:
         modules = (metadata.distribution(package).read_text("top_level.txt") or "").split()
     except metadata.PackageNotFoundError:
@@ -62,7 +61,7 @@ def _difference_of(package: str, module: str, elsewhere: bool) -> str:
         return f"{line}, from {folder}: {remedy}" if elsewhere else ""
     files = [file for file in distribution.files or () if Path(str(file.locate())).resolve().is_relative_to(folder)]
     if not any(file.name == "__init__.py" and file.parent.name == module for file in files):
-        return ""  # it adds to a package of another distribution, as mujoco-mjx to mujoco
+        return ""  # this distribution extends a package, as mujoco-mjx extends mujoco
     if not any(map(_is_changed, files)):
         return ""
     others = [
@@ -75,13 +74,13 @@ def _difference_of(package: str, module: str, elsewhere: bool) -> str:
 
 
 def _release(version: object) -> tuple[int, ...]:
-    """The numbers of a version: (7, 3, 1) for '7.3.1+patched', (4, 1) for '4.1.0'; empty if it is no version."""
+    """The numbers of a version, such as (4, 1) for '4.1.0'; empty if the string is no version."""
     match = RELEASE.match(version) if isinstance(version, str) else None
     return tuple(map(int, re.sub(r"(\.0+)+$", "", match[1]).split("."))) if match else ()
 
 
 def _is_changed(file: metadata.PackagePath) -> bool:
-    """Whether a file was changed since its installation; False if the installation has no digest of it."""
+    """Whether a file was changed since its installation; False for a file without a digest."""
     if file.hash is None or file.hash.mode != "sha256":
         return False
     try:

@@ -13,15 +13,14 @@ from reference.mechanism import Mechanism
 
 @dataclass(frozen=True)
 class Importer:
-    """Reads models of an engine, which is imported when the first one is read."""
+    """Reads models of an engine; the first call imports the engine."""
 
     package: str
 
     def reading(self, model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
-        """The reading of a file, or of an object of the engine.
+        """Read a file, or an object of the engine.
 
-        Raises ValueError if a file is no model, and Unsupported, with the name of the element, for an element without
-        an ideal counterpart.
+        Raises ValueError if a file is no model, and Unsupported for an element without an ideal counterpart.
         """
         reader = import_module(f"{self.package}.reading")
         if isinstance(model, str | Path):
@@ -32,12 +31,12 @@ class Importer:
         return self.reading(model, ReadingTerms(without)).mechanism
 
 
-mujoco = Importer("engines.mujoco")  # MJCF, URDF, a mujoco.MjModel.
-pymunk = Importer("engines.pymunk")  # script.py[:NAME], a pymunk.Space.
+mujoco = Importer("engines.mujoco")  # It reads MJCF, URDF or a mujoco.MjModel.
+pymunk = Importer("engines.pymunk")  # It reads script.py[:NAME] or a pymunk.Space.
 
 
 def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:
-    """The reading of an object of MuJoCo or pymunk. Raises ValueError for anything else."""
+    """Read an object of MuJoCo or pymunk; raises ValueError for another object."""
     for importer in (mujoco, pymunk):
         if any(kind.__module__.split(".")[0] == importer.package.split(".")[1] for kind in type(model).__mro__):
             return importer.reading(model, terms)

@@ -1,11 +1,11 @@
 """Load the values that a reference or an entry point names.
 
-A reference is `package.module:NAME`, `path/to/file.py`, or `path/to/file.py:NAME`. NAME is one value, or a tuple or
-list of values; a file without a name means all values at its top level. This rule applies to entry points, to words of
-a command line and to stored references.
+A reference is `package.module:NAME`, `path/to/file.py`, or `path/to/file.py:NAME`. NAME is a value, or a tuple or list
+of values. A file without NAME means all values at its top level. Entry points, words of a command line and stored
+references all follow this rule.
 
-Our entry points are in `pyproject.toml`. In a checkout that file is read directly, so that a clone works without
-installation, and an editable installation sees changes of the file.
+In a checkout our entry points are read from `pyproject.toml`. A clone then works without installation, and an editable
+installation sees changes of the file.
 """
 
 from __future__ import annotations
@@ -30,9 +30,10 @@ FORMS = "package.module:NAME, path/to/file.py or path/to/file.py:NAME"
 class Kind:
     """A kind of value that a reference must name.
 
-    word: its name in messages, such as "engine"
-    trouble: returns why a value is not of this kind, as a clause; empty if it is
-    defaults: returns the instance of a class without arguments, or None; without it, classes in a file do not count
+    word: name of the kind in messages, such as "engine"
+    trouble: function that returns a clause on why a value is not of this kind; empty if the value is of this kind
+    defaults: function that returns an instance of a class made without arguments, or None. If `defaults` is None,
+    classes in a file are ignored
     """
 
     word: str
@@ -41,15 +42,15 @@ class Kind:
 
 
 def is_reference(word: str) -> bool:
-    """Whether a word of the command line is a reference, and not a registered name."""
+    """Whether a word of the command line is a reference instead of a registered name."""
     return ":" in word or word.endswith(".py")
 
 
 def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, ...]:
-    """The values that a reference names, without duplicates. Raises ValueError, in one sentence, if there are none.
+    """The values that a reference names, without duplicates. Raises ValueError if there are no values.
 
-    `folder`: the base of relative paths, by default the current folder. The folder of the module, or this one, is
-    appended to `sys.path` for good, since worker processes import the module by its name.
+    `folder` is the base of relative paths, by default the current folder. The folder of a file, or `folder`, is
+    appended to `sys.path` and stays there, since worker processes import the module by its name.
     """
     source, name = _parts(reference)
     folder = Path.cwd() if folder is None else folder
@@ -72,7 +73,7 @@ def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, .
 
 
 def _parts(reference: str) -> tuple[str, str]:
-    """The module or file, and the name in it, which may be empty. Raises ValueError."""
+    """The module or file, and the name, which may be empty. Raises ValueError."""
     if reference.endswith(".py"):
         return reference, ""
     source, _, name = reference.rpartition(":")
@@ -87,7 +88,7 @@ def _named(module: ModuleType, name: str) -> tuple[Any, ...]:
 
 
 def _unhashable(value: Any) -> str:
-    """Why a value can't be the key of stored results, as a clause; empty if it can."""
+    """A clause on why a value can't be a key of stored results; empty if it can."""
     try:
         hash(value)
     except TypeError:
@@ -96,7 +97,7 @@ def _unhashable(value: Any) -> str:
 
 
 def _at_top(module: ModuleType, kind: Kind, reference: str) -> Iterator[Any]:
-    """The values of a module in their order, and default instances of its classes without an instance among them."""
+    """The values of a module in their order, and default instances of classes that have no instance in the module."""
     values = list(vars(module).values())
     classes = {type(value) for value in values}
     for value in values:
@@ -113,7 +114,7 @@ def _at_top(module: ModuleType, kind: Kind, reference: str) -> Iterator[Any]:
 
 
 def _module_of_file(path: Path) -> ModuleType:
-    """The file as a module by its usual name, so `path/to/package/file.py` is `package.file`. Raises ValueError."""
+    """Import `path/to/package/file.py` by its usual name `package.file`. Raises ValueError."""
     if not path.is_file():
         raise ValueError(f"{path}: there is no such file")
     path = path.resolve()
@@ -131,7 +132,7 @@ def _module_of_file(path: Path) -> ModuleType:
 
 def _imported(name: str, owner: str, folder: Path) -> ModuleType:
     if str(folder) not in sys.path:
-        sys.path.append(str(folder))  # at the end, so that it does not hide installed modules
+        sys.path.append(str(folder))  # appended, so that the folder hides no installed module
     try:
         return import_module(name)
     except (Exception, SystemExit) as error:  # the module may raise any exception
@@ -150,7 +151,7 @@ def describe(error: BaseException) -> str:
             for frame in traceback.extract_tb(error.__traceback__)
             if not frame.filename.startswith("<frozen") and frame.filename not in machinery
         ]
-        # The first file is the module itself; later ones may be libraries without a fault.
+        # The first frame is in the module itself. Later frames may be in libraries that have no fault.
         in_module = [frame for frame in frames if frame.filename == frames[0].filename]
         if in_module:
             text = f"{in_module[-1].filename}:{in_module[-1].lineno}: {text}"
@@ -159,7 +160,7 @@ def describe(error: BaseException) -> str:
 
 @dataclass(frozen=True)
 class Registered:
-    """The values of a group, and a line for each entry point that can't be used, with its distribution."""
+    """The values of a group, and `troubles`: one line for each entry point that can't be used."""
 
     values: tuple[Any, ...]
     troubles: tuple[str, ...] = ()
@@ -172,10 +173,10 @@ def registered(
     known: Mapping[str, Any] = MappingProxyType({}),
     extras: bool = False,
 ) -> Registered:
-    """All values of a group with unique names. If two have the same name, ours or the first distribution's is used.
+    """All values of a group with unique names. For equal names, our value or the first distribution's value is used.
 
-    known: values of other groups by name; a different value with such a name is left out
-    extras: whether to use the entry points with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, or the others
+    known: values of other groups by name; a different value with a known name is left out
+    extras: whether to use entry points with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, or those without
     """
     values: dict[str, Any] = {}
     owners = dict.fromkeys(known, "another group")
@@ -200,9 +201,9 @@ def registered(
 
 
 def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
-    """The first value of each key of a group; ours come first.
+    """The values of a group by key; for equal keys, our value or the first distribution's value is used.
 
-    A value that can't be loaded is left out, with a warning unless a package that it needs is not installed.
+    A value that can't be loaded is left out. A warning is given, unless a package of another project is missing.
     """
     values: dict[str, Any] = {}
     for owner, key, reference in (*_ours(group), *_theirs(group)):
@@ -217,14 +218,14 @@ def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
 
 
 def _lacks_a_package(error: BaseException | None) -> bool:
-    """Whether an import failed because a package of another project is not installed."""
+    """Whether an import failed because a package of another project is missing."""
     package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
     return package not in ("", "reference", "engines", "reports")
 
 
 @functools.cache
 def _checkout() -> dict[str, Any] | None:
-    """The project table of the pyproject.toml next to these packages; None without one, or in another project."""
+    """The project table of our pyproject.toml; None if this is no checkout."""
     file = Path(__file__).resolve().parents[1] / "pyproject.toml"
     if not file.is_file():
         return None
@@ -234,7 +235,7 @@ def _checkout() -> dict[str, Any] | None:
 
 
 def _ours(group: str) -> list[tuple[str, str, str]]:
-    """(distribution, key, reference) of our entry points, sorted by key, since installations lose the file's order."""
+    """(distribution, key, reference) of our entry points, sorted by key as in an installation."""
     project = _checkout()
     if project is None:
         return [point for point in _installed(group) if point[0] == OURS]
@@ -242,7 +243,7 @@ def _ours(group: str) -> list[tuple[str, str, str]]:
 
 
 def _theirs(group: str) -> list[tuple[str, str, str]]:
-    """(distribution, key, reference) of all other entry points, in an order that does not depend on the path."""
+    """(distribution, key, reference) of the entry points of other distributions."""
     return [point for point in _installed(group) if point[0] != OURS]
 
 

@@ -1,27 +1,26 @@
 """MJX under test: MuJoCo's model, stepped by JAX instead of C, here on the processor and in double precision.
 
-The model is the MjModel that our MuJoCo adapter compiles with the same settings, so that only the implementation
-differs from `mujoco`. MJX cannot call the callbacks of that adapter, so models with callbacks are refused. Skates and
-rolling are refused too: this adapter builds no contact, though MJX has contacts. So is every model that MJX itself
-refuses, with its message.
+Our MuJoCo adapter compiles the MjModel with the same settings, so only the implementation differs from `mujoco`. MJX
+cannot call the MuJoCo adapter's callbacks, so models with callbacks are refused. Skates and rolling are refused too:
+MJX has contacts, but this adapter builds none. If MJX refuses a model, the adapter passes on MJX's message.
 
-MJX omits the velocity term J-dot v of loops, which C MuJoCo has since 3.7. MJX's own tests say "Jdotv effect (not in
-MJX)". At any step a loop therefore has a gap of J-dot v times the square of the row's time constant.
-Runs with loops have a warning, and `reports/pages/engines` compares the forces. If the time constant is proportional to
-the step, the error falls with its square: for the free four-bar with RK4 at 1e-3 s it is 7.40e-4 rad with a time
-constant of two steps, as in MuJoCo before 3.7, and 4.58e-3 rad with the five of our tuned variant.
+MJX omits the velocity term (dJ/dt) v of loops, which MuJoCo in C has since version 3.7. MJX's tests say "Jdotv effect
+(not in MJX)". A loop therefore has a gap of (dJ/dt) v times the square of the row's time constant at any step. Runs
+with loops have a warning, and `reports/pages/engines` compares the forces. If the time constant is a multiple of the
+step, the error is proportional to the square of the multiple. For the free four-bar (RK4, 1 ms) the error is 7.40e-4
+rad with a time constant of two steps, as in MuJoCo before 3.7. With the five steps of our tuned variant it is 4.58e-3
+rad.
 
-The solver ends if no residual of the forces is above 1e-8, since `mjx.math.norm` returns zero for such a vector. The
-tolerance has no effect then. This limit has a unit, so the model is in the smallest unit of mass that its rows admit
-(`_smallest_unit`). The adapter of MuJoCo uses about the mass of the mechanism. With that unit a gear would have no
-effect on light bodies next to heavy ones.
+The solver ends if no residual of the forces exceeds 1e-8, since `mjx.math.norm` then returns zero. The tolerance then
+has no effect. The limit of 1e-8 has a unit, so the adapter uses the smallest possible unit of mass (`_smallest_unit`).
+With the larger unit of the MuJoCo adapter, a gear would have no effect on light bodies next to heavy bodies.
 
-The compilation of a model takes 5 to 30 s, which counts as building. JAX caches the program for models of the same
-structure with other numbers. For other processes it caches it in the user's cache folder, or in the folder of the
-environment variable JAX_COMPILATION_CACHE_DIR.
+The compilation of a model takes 5 to 30 s, which is part of the build time. JAX caches the program for models of the
+same structure. The cache is in the user's cache folder, or in the folder that the variable JAX_COMPILATION_CACHE_DIR
+names.
 
 The package mujoco-mjx requires the package mujoco, which overwrites the files of mujoco-core with an older release.
-Therefore install it without dependencies: pip install --no-deps mujoco-mjx.
+Therefore install mujoco-mjx without dependencies: pip install --no-deps mujoco-mjx.
 """
 
 from __future__ import annotations
@@ -64,8 +63,9 @@ from reference.mechanism import Mechanism
 from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
-# The compliance R of the stiffest row at the start, relative to mjMINVAL, the smallest R in MuJoCo and MJX. The margin
-# is for a gap of a millimetre, which halves R as shipped, and for the unit's rounding to a power of two.
+# Compliance R of the stiffest row at t = 0, relative to mjMINVAL, the smallest R in MuJoCo and MJX. A factor of 2 is a
+# margin for a gap of a millimetre, which halves R as shipped. Another factor of 2 is for rounding the unit to a power
+# of two.
 LEAST_COMPLIANCE = 4.0
 NO_VELOCITY_TERM = RunWarning(
     "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step",
@@ -76,7 +76,7 @@ NO_VELOCITY_TERM = RunWarning(
 
 @dataclass(frozen=True)
 class Mjx(MuJoCoOnDevice):
-    """An engine in the sense of `engines.Engine`; the fields are those of its base."""
+    """An engine in the sense of `engines.Engine`; `MuJoCoOnDevice` describes the fields."""
 
     name = "mjx"
     title: ClassVar[str] = "MJX"
@@ -88,18 +88,18 @@ class Mjx(MuJoCoOnDevice):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The order of the integrator if there is no loop; not declared for loops."""
+        """The order of the integrator; no order is declared for loops."""
         tree = spanning_tree(mechanism)
         if lacks_velocity_terms(tree):
             return NotDeclared("MJX leaves out the velocity term of loops, which no step makes smaller")
-        if tree.closed:  # the rows are sums of angles without velocity terms
+        if tree.closed:  # the rows are sums of angles, which have no velocity terms
             return self.settings.order(mechanism)
         return self.order_without_loops(mechanism)
 
     def instants(
         self, mechanism: Mechanism, dt: float, steps: int, built: Mechanism | None = None
     ) -> tuple[Instant, ...] | NotDeclared:
-        """Accelerations in the states of MuJoCo's steps. Those of loops and rods lack their velocity terms."""
+        """Accelerations in the states of MuJoCo's steps; loops and rods lack their velocity terms."""
         settings = replace(self.settings, tolerance=min(self.settings.tolerance, declared.ROUNDING_TOLERANCE))
         self.capability.require(built or mechanism)
         self.require()
@@ -116,7 +116,7 @@ class Mjx(MuJoCoOnDevice):
         return None if settings is None else replace(self, settings=settings)
 
     def model(self, mechanism: Mechanism, dt: float) -> DeviceModel:
-        """The model on the device before compilation; raises Unsupported."""
+        """The model on the device, not yet compiled by JAX; raises Unsupported."""
         model = self.compiled(mechanism, dt)
         if unit := _smallest_unit(model):
             model = self.compiled(mechanism, dt, unit)
@@ -130,10 +130,10 @@ class Mjx(MuJoCoOnDevice):
 
 
 def _smallest_unit(model: MuJoCoModel) -> float | None:
-    """The unit of mass [kg] in which the compliance R of the stiffest row is LEAST_COMPLIANCE mjMINVAL, or None.
+    """The unit of mass [kg] in which the compliance R of the stiffest row is LEAST_COMPLIANCE * mjMINVAL, or None.
 
-    The solver's limit of 1e-8 on forces is then 4e-23 / R [N, with R in 1/kg]. R is at least 1e-4 of the row's inverse
-    inertia, so the limit is at most 4e-19 of the inertia times 1 m/s^2 or 1 rad/s^2.
+    The solver's limit on forces is then 4e-23 / R [N, with R in 1/kg]. R is at least 1e-4 of the row's inverse inertia.
+    So the limit is at most 4e-19 of the inertia times 1 m/s^2 or 1 rad/s^2.
     """
     compliance = model.start().efc_R
     if not len(compliance):
@@ -142,27 +142,27 @@ def _smallest_unit(model: MuJoCoModel) -> float | None:
 
 
 def lacks_velocity_terms(tree: Tree) -> bool:
-    """Whether MJX omits a velocity term, which loops and rods have."""
+    """Whether the mechanism has a loop or rod, whose velocity term MJX omits."""
     return bool(tree.loops) or any(isinstance(joint, Rod) for joint in tree.mechanism.joints)
 
 
 @cache
 def _programs() -> tuple[Any, Any, Any]:
-    """The module mjx and the functions steps(model, data, count) and forward(model, data); imports JAX."""
+    """Import JAX and return mjx and the functions steps(model, data, count) and forward(model, data)."""
     os.environ.setdefault("JAX_PLATFORMS", chosen_device())
     os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1")
-    with quiet():  # JAX prints that another back end is not installed
+    with quiet():  # JAX prints that another backend is missing
         import jax
 
         jax.config.update("jax_enable_x64", True)
         if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
-            # Programs have the instructions of one machine, so machines with a shared home have separate folders.
+            # A program has the instructions of one machine, so machines with a shared home use separate folders.
             jax.config.update("jax_compilation_cache_dir", str(cache_folder() / "mjx" / platform.node()))
             jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
         from mujoco import mjx
 
     def step(model: Any, now: Any) -> Any:
-        # In double precision MJX widens some integers (of tendon paths), so that types would change within the loop.
+        # In double precision MJX widens some integers of tendon paths, but types must not change within the loop.
         return jax.tree.map(lambda new, old: new.astype(old.dtype), mjx.step(model, now), now)
 
     def steps(model: Any, data: Any, count: Any) -> Any:
@@ -178,9 +178,9 @@ class DeviceModel:
         self.size = size_of(model, self._data.nefc)
 
     def accelerations(self, model: MuJoCoModel, data: Any) -> Array:
-        """The accelerations (nv,) by MJX in the state of a mujoco.MjData of `model`.
+        """MJX's accelerations (nv,) in the state `data`, a mujoco.MjData of `model`.
 
-        The first call for each structure of a model compiles a program in about 10 s.
+        The first call for a new structure of a model compiles a program in about 10 s.
         """
         answer = self._forward(self._held, self.mjx.put_data(model.compiled, data))
         return np.asarray(answer.qacc, dtype=np.float64)
@@ -212,10 +212,10 @@ class DeviceModel:
 
 
 def _solver_residual(model: MuJoCoModel, data: Any, answer: Any) -> float:
-    """The error of MJX's solution `answer` of its equations, relative to the accelerations.
+    """The residual of MJX's solver in `answer`, as an error relative to the accelerations.
 
-    The cost of MJX is quadratic, so the error is one Newton step, H^-1 g with H = M + J^T R^-1 J and the residual g of
-    the forces. `data` is a mujoco.MjData in the state, for M.
+    MJX minimises a quadratic cost. The error is therefore the Newton step H^-1 g, with H = M + J^T R^-1 J and the
+    residual g of the forces. `data` is a mujoco.MjData in the same state, which gives the mass matrix M.
     """
     rows, solved = np.asarray(answer._impl.efc_J), np.asarray(answer.qacc)
     if not len(rows):

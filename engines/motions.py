@@ -1,4 +1,4 @@
-"""Properties of a motion that follow from the joints, loads and start; convergence orders depend on them."""
+"""Properties of a motion that follow from joints, loads and initial state, and that determine convergence orders."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ def starts_at_rest(mechanism: Mechanism) -> bool:
 
 @validated
 def is_prescribed(mechanism: Mechanism) -> bool:
-    """Whether joints and drives determine all poses, so that nothing is integrated and forces have no effect.
+    """Whether joints and drives determine all poses, so that forces have no effect on the motion.
 
-    With a skate, the velocities may be determined and the poses not: these follow by integration.
+    With a skate, only the velocities may be determined, and poses follow by integration.
     """
     return mechanism.degrees_of_freedom()[0] == 0
 
 
 @validated
 def turns_steadily(mechanism: Mechanism) -> bool:
-    """Whether all rates are constant: no gravity, no force, and no joint but pins and drives to the ground."""
+    """Whether rates are constant: all joints are pins and drives to the ground, without gravity or force elements."""
     grounded = all(isinstance(joint, Pin | Drive) and None in (joint.first, joint.second) for joint in mechanism.joints)
     return grounded and not any(mechanism.gravity) and not mechanism.forces
 
 
 @validated
 def over_three(mechanism: Mechanism) -> float:
-    """The number of bodies divided by three, at least 1: the factor on the cost of a step with three bodies."""
+    """The cost of a step relative to a step of three bodies: the number of bodies divided by three, at least 1."""
     return max(1.0, len(mechanism.bodies) / 3)

@@ -1,29 +1,29 @@
 """MuJoCo Warp under test: MuJoCo's model, stepped by kernels of NVIDIA Warp in single precision, here on the processor.
 
-The model is that of our MuJoCo adapter, as in `engines.mjx`. MuJoCo Warp has the velocity term J-dot v of loops, which
-MJX leaves out ([mujoco_warp#1294](https://github.com/google-deepmind/mujoco_warp/pull/1294)). In 4.0.0 the bodies'
-velocities in it are those of the evaluation before, since `fwd_position` makes the constraints before `fwd_velocity`
-computes the velocities. Runs with loops have a warning. For reactions our adapter evaluates a state twice, so that the
-velocities belong to it.
+Our MuJoCo adapter compiles the model, as for `engines.mjx`. MuJoCo Warp has the velocity term (dJ/dt) v of loops, which
+MJX omits ([mujoco_warp#1294](https://github.com/google-deepmind/mujoco_warp/pull/1294)). In version 4.0.0 this term
+contains the bodies' velocities of the previous evaluation, since `fwd_position` makes the constraints before
+`fwd_velocity` computes the velocities. Runs with loops have a warning. For reactions our adapter evaluates a state
+twice, so that the term contains the velocities of this state.
 
-A step is captured once as a graph and launched again, as its documentation recommends for a GPU
-(`mujoco.readthedocs.io`, "MuJoCo Warp"). Warp 1.19 captures on the processor too: a step of Euler of the free four-bar
-then takes 17 us instead of 3 ms, and has the same bits.
+The adapter captures a step as a graph and launches it again, as the documentation recommends for a GPU
+(`mujoco.readthedocs.io`, "MuJoCo Warp"). Warp 1.19 captures on the processor too. An Euler step of the free four-bar
+then takes 17 us instead of 3 ms, and its result has the same bits.
 
-Rounding decides the settings of *tuned*. In single precision a loop is open by about 6e-8 m, and its stiffness makes
-an acceleration of that: 2.5e-3 m/s^2 with a time constant of 5 ms, or 0.4 % of the first acceleration of a four-bar. A
-small compliance also makes the solver's equations ill-conditioned. So the stiffest `solimp`, 0.9999, is not the best:
-with it the free four-bar (RK4, 1 ms) is wrong by 2.1e-4 rad, and with 0.997 and a time constant of 2.5 steps by 4e-5
-rad. From 0.99 to 0.999 the errors differ by less than a factor of three. `put_model` raises the solver's tolerance to
-1e-6 or more; without a tolerance a step takes ten times as long and is no better. Our adapter writes the tolerance
-after `put_model`, relative to the inertia of the coordinates that are not driven (`engines.mujoco.model`): otherwise
-the large inertia of a drive would end the solver at once.
+Rounding determines the settings of *tuned*. In single precision a loop is open by about 6e-8 m. With a time constant of
+5 ms, this gap causes an acceleration of 2.5e-3 m/s^2, which is 0.4 % of the first acceleration of a four-bar. A small
+compliance also makes the solver's equations ill-conditioned. Therefore the stiffest `solimp`, 0.9999, is not the best.
+For the free four-bar (RK4, 1 ms) it gives an error of 2.1e-4 rad. With `solimp` 0.997 and a time constant of 2.5 steps
+the error is 4e-5 rad. From 0.99 to 0.999 the errors differ by less than a factor of three. `put_model` raises the
+solver's tolerance to at least 1e-6. Without a tolerance a step takes ten times as long, and the error is not smaller.
+Our adapter sets the tolerance after `put_model`, relative to the inertia of the coordinates without drives
+(`engines.mujoco.model`). Otherwise the large inertia of a drive would end the solver at once.
 
-Warp compiles kernels when they are first used: minutes for the first model on a computer, and seconds for a model of
-another structure. It keeps them in its own cache folder, see its variable WARP_CACHE_PATH.
+Warp compiles kernels at their first use. This takes minutes for the first model on a computer, and seconds for a model
+of another structure. Warp's variable WARP_CACHE_PATH names the folder of the compiled kernels.
 
-The package mujoco-warp requires the package mujoco, which overwrites the files of mujoco-core. So install it without
-dependencies: pip install --no-deps mujoco-warp. Newton's solver `SolverMuJoCo` is this package.
+The package mujoco-warp requires the package mujoco, which overwrites the files of mujoco-core. Therefore install
+mujoco-warp without dependencies: pip install --no-deps mujoco-warp. Newton's solver `SolverMuJoCo` uses this package.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from reference.mechanism import Mechanism
 from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
-# The least tolerance that `put_model` leaves.
+# The smallest tolerance that `put_model` permits.
 LEAST_TOLERANCE = 1e-6
 LATE_VELOCITY_TERM = RunWarning(
     "upstream: the velocity term of loops in MuJoCo Warp has the bodies' velocities of the evaluation before",
@@ -63,7 +63,7 @@ LATE_VELOCITY_TERM = RunWarning(
 
 @dataclass(frozen=True)
 class StiffInSinglePrecision(TiedToStep):
-    """The stiffness at which the compliance of a loop costs about as much as rounding; the module gives the numbers."""
+    """The stiffness at which a loop's compliance and rounding cause errors of about the same size."""
 
     impedance: ClassVar[tuple[float, float, float, float, float]] = (0.997, 0.997, 0.001, 0.5, 1.0)
     steps: float = 2.5
@@ -71,7 +71,7 @@ class StiffInSinglePrecision(TiedToStep):
 
 @dataclass(frozen=True)
 class MuJoCoWarp(MuJoCoOnDevice):
-    """An engine in the sense of `engines.Engine`; the fields are those of its base."""
+    """An engine in the sense of `engines.Engine`; `MuJoCoOnDevice` describes the fields."""
 
     name = "mujoco-warp"
     title: ClassVar[str] = "MuJoCo Warp"
@@ -84,7 +84,7 @@ class MuJoCoWarp(MuJoCoOnDevice):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The integrator's where there is no loop."""
+        """The order of the integrator; no order is declared for loops."""
         if spanning_tree(mechanism).closed:
             return NotDeclared("the stiffness of loops multiplies the rounding of single precision")
         return replace(self.order_without_loops(mechanism), amplified=self.precision / np.finfo(float).eps)
@@ -97,13 +97,13 @@ class MuJoCoWarp(MuJoCoOnDevice):
             raise self.refusal(reason) from None
 
     def stricter(self, mechanism: Mechanism) -> None:
-        """None: the tolerance is near the rounding already."""
+        """None, since the tolerance is already near the rounding."""
 
 
 @cache
 def load_warp(device: str) -> Any:
-    """The module warp, which prints errors alone; raises Unsupported where it has no such device."""
-    with quiet():  # Warp prints that there is no driver of CUDA
+    """Import warp, which then prints only errors; raises Unsupported if Warp finds no such device."""
+    with quiet():  # Warp prints that the CUDA driver is missing
         import warp
 
         warp.config.log_level = warp.LOG_ERROR
@@ -116,10 +116,10 @@ def load_warp(device: str) -> Any:
 
 
 class WarpModel:
-    """MuJoCo's model, and the same on the device."""
+    """A model of MuJoCo and its copy on the device."""
 
     def __init__(self, model: MuJoCoModel, tolerance: float) -> None:
-        """tolerance: that of the settings, before it was scaled by the inertia that is free."""
+        """tolerance: the tolerance in the settings; `model` has it scaled by the inertia without drives"""
         self.model, self.device = model, chosen_device()
         self.warp = load_warp(self.device)
         with quiet():
@@ -141,7 +141,7 @@ class WarpModel:
 
     def _record(self, samples: int, every: int) -> Recorded:
         warp, step = self.warp, self.mujoco_warp.step
-        step(self.held, self._data())  # compiles or loads the kernels
+        step(self.held, self._data())  # this step compiles or loads the kernels
         data = self._data()
         with warp.ScopedCapture() as capture:
             step(self.held, data)
@@ -167,8 +167,8 @@ class WarpModel:
             return np.full_like(position, np.nan)
         data.qpos.assign(position[None].astype(np.float32))
         data.qvel.assign(velocity[None].astype(np.float32))
-        for _ in range(2):  # The first computes the velocities that the second one's velocity term needs.
-            data.qacc_warmstart.zero_()  # In single precision the solver's answer depends on its first guess.
+        for _ in range(2):  # The first evaluation computes velocities for the second one.
+            data.qacc_warmstart.zero_()  # In single precision the solver's result depends on its initial guess.
             self.mujoco_warp.forward(self.held, data)
         return data.qacc.numpy()[0].astype(np.float64)
 

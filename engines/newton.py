@@ -1,24 +1,24 @@
-"""Newton under test: its solvers Kamino, for closed loops, and XPBD, in single precision on the processor or a GPU.
+"""Newton under test with its solvers Kamino and XPBD, in single precision on the processor or a GPU.
 
-Bodies are free and all joints are constraints: a Pin is a revolute joint about z, and a Weld a fixed one. A loop is
-closed by a joint outside the articulations, as in Newton's examples. Our code computes force elements before every
-step and passes them as forces on bodies. Accelerations are changes of velocity over the last step.
+Bodies are free and all joints are constraints. A Pin is a revolute joint about z, and a Weld is a fixed joint. A joint
+outside the articulations closes a loop, as in Newton's examples. Our code computes force elements before every step and
+passes them as forces on bodies. Accelerations are changes of velocity over the last step.
 
-*default* is Kamino as shipped, with its backend PADMM and `alpha` 0.01: a step closes 1 % of a gap, so at 1 ms the free
-four-bar is wrong by 0.074 rad, as in other engines that close gaps slowly. *tuned* is its backend LOX, which Newton
-calls experimental, with its own settings: 5.7e-3 rad, a tenth of the time, and an error that falls with the step.
-*whole gap* is PADMM with `alpha` 1: 7.1e-3 rad. In single precision PADMM has an error of 2e-3 rad at 0.25 ms with any
-`alpha`, and the backend DVI 0.06 rad. *xpbd* is XPBD as shipped, with 2 iterations: 0.73 rad. With 200 iterations and
-a quarter of the step it is 0.50 rad, and with larger relaxations the loop opens.
+The following errors are those of the free four-bar at 1 ms. *default* is Kamino as shipped, with the backend PADMM and
+`alpha` 0.01. A step closes 1 % of a gap, and the error is 0.074 rad. *tuned* is Kamino with the backend LOX, which
+Newton calls experimental. LOX has an error of 5.7e-3 rad, which falls with the step, and takes a tenth of the time.
+*whole gap* is PADMM with `alpha` 1, and its error is 7.1e-3 rad. At 0.25 ms PADMM has an error of 2e-3 rad with any
+`alpha`, and the backend DVI has an error of 0.06 rad. *xpbd* is XPBD as shipped, with 2 iterations and an error of 0.73
+rad. With 200 iterations and a quarter of the step, its error is 0.50 rad. With larger relaxations the loop opens.
 
-Kamino makes room for 1000 contacts where a model has none, and then computes with matrices of that size: a step takes
-50 ms. Our adapter sets the model's `rigid_contact_max` to 1, and a step takes 1.5 ms with the same numbers. A step is
-captured as a graph (`warp.ScopedCapture`), as Newton's examples do on a GPU.
+If a model has no contacts, Kamino allocates matrices for 1000 contacts, and a step takes 50 ms. Our adapter sets the
+model's `rigid_contact_max` to 1. A step then takes 1.5 ms and has the same results. The adapter captures a step as a
+graph (`warp.ScopedCapture`), as Newton's examples do on a GPU.
 
-`SolverMuJoCo` is MuJoCo Warp, which is an engine of its own here. `SolverFeatherstone` ignores a joint that closes a
-loop without a word. Both are refused by name.
+The adapter refuses two solvers. `SolverMuJoCo` is MuJoCo Warp, which is a separate engine here. `SolverFeatherstone`
+ignores a joint that closes a loop without a message.
 
-Warp compiles kernels when they are first used, which takes a minute or two on a new computer, and keeps them.
+Warp compiles and stores kernels at their first use, which takes one or two minutes on a new computer.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
-NEWTON_FORCES_COST = 150e-6  # CPU time [s] of the force elements at one state
+NEWTON_FORCES_COST = 150e-6  # CPU time [s] of one evaluation of the force elements.
 # CPU time [s] of a step of three bodies, by solver and backend.
 NEWTON_STEP_COSTS = {"padmm": 1.5e-3, "dvi": 0.2e-3, "lox": 0.16e-3, "xpbd": 5e-6}
-# Solvers of Newton that this adapter refuses, with the reason.
+# Why this adapter refuses a solver of Newton.
 REFUSED_SOLVERS = {
     "mujoco": "newton's SolverMuJoCo is MuJoCo Warp, which is the engine mujoco-warp here",
     "featherstone": "newton's SolverFeatherstone ignores a joint that closes a loop without a word",
@@ -61,9 +61,9 @@ class Newton(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
     solver: "kamino" or "xpbd"
-    backend: of Kamino, "padmm", "dvi" or "lox"
-    alpha: fraction of a gap that a step of Kamino closes; not of LOX
-    iterations: of XPBD
+    backend: backend of Kamino, "padmm", "dvi" or "lox"
+    alpha: fraction of a gap that a step of Kamino closes; LOX does not use it
+    iterations: number of iterations of XPBD
     """
 
     name = "newton"
@@ -93,7 +93,7 @@ class Newton(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """Not declared: the error does not fall with the step to a limit that Newton documents."""
+        """No order is declared, since Newton documents no limit of the error for small steps."""
         return NotDeclared("newton closes gaps by fractions and residuals, in single precision")
 
     @validated
@@ -111,7 +111,7 @@ class Newton(ExtraEngine):
 
 @cache
 def load_newton(device: str) -> tuple[Any, Any]:
-    """The modules warp and newton; raises Unsupported where Warp has no such device."""
+    """Import warp and newton; raises Unsupported if Warp finds no such device."""
     warp = load_warp(device)
     with quiet():
         import newton
@@ -120,7 +120,7 @@ def load_newton(device: str) -> tuple[Any, Any]:
 
 
 class NewtonModel:
-    """The engine's objects for one mechanism, with a graph for each direction between two states."""
+    """A mechanism as a model of Newton. Two captured steps exchange the two states in turn."""
 
     def __init__(self, engine: Newton, mechanism: Mechanism, dt: float) -> None:
         self.engine, self.mechanism, self.dt, self.device = engine, mechanism, dt, chosen_device()
@@ -166,7 +166,7 @@ class NewtonModel:
         return builder
 
     def _add_joints(self, builder: Any) -> None:
-        """Add the joints of trees, of which Newton makes articulations, and then those that close loops."""
+        """Add an articulation for each tree of joints, and then the joints that close loops."""
         joints = [joint for joint in self.mechanism.joints if isinstance(joint, Pin | Weld)]
         trees: list[list[tuple[str, str | None, Pin | Weld | None]]] = []
         of_body: dict[str, list[tuple[str, str | None, Pin | Weld | None]]] = {}
@@ -175,7 +175,7 @@ class NewtonModel:
                 trees.append([])
             of_body[child] = trees[-1] if parent is None else of_body[parent]
             of_body[child].append((child, parent, joint))
-        for tree in trees:  # Newton numbers the joints of an articulation without gaps
+        for tree in trees:  # an articulation needs consecutive numbers of joints
             numbers = []
             for child, parent, joint in tree:
                 if joint is None:
@@ -188,7 +188,7 @@ class NewtonModel:
             self._add_joint(builder, joint, joint.first)
 
     def _add_joint(self, builder: Any, joint: Pin | Weld, parent: str | None) -> int:
-        """Add a joint whose parent is this body, or the ground where one of its bodies is the ground."""
+        """Add a joint to its parent, which is the ground if the joint connects to the ground."""
         ends = [(joint.first, joint.first_point), (joint.second, joint.second_point)]
         if joint.second is None or (joint.first is not None and joint.first != parent):
             ends.reverse()
@@ -197,7 +197,7 @@ class NewtonModel:
             body = -1 if name is None else self.mechanism.body_index(name)
             places.append((body, point, 0.0 if body < 0 else float(self.mechanism.pose[body, 2])))
         (first, point, angle), (second, other_point, other_angle) = places
-        # The frames of a fixed joint coincide: the parent's is turned by the angle between the bodies.
+        # The two frames of a fixed joint must coincide, so the parent's frame has the angle between the bodies.
         turned = other_angle - angle if isinstance(joint, Weld) else 0.0
         frames = {"parent_xform": self._transform(*point, turned), "child_xform": self._transform(*other_point)}
         if isinstance(joint, Weld):
@@ -227,7 +227,7 @@ class NewtonModel:
     def _record(self, samples: int, every: int) -> Recorded:
         warp, states, last = self.warp, [self._start(), self._start()], self.mechanism.pose[:, 2].copy()
         self.solver.step(self._start(), self._start(), self.control, None, self.dt)  # compiles or loads the kernels
-        self.solver = self._solver()  # without the forces of that step
+        self.solver = self._solver()  # the new solver has no forces of that step
         graphs = []
         for now, then in ((states[0], states[1]), (states[1], states[0])):
             with warp.ScopedCapture() as capture:
@@ -239,7 +239,7 @@ class NewtonModel:
                 if self.mechanism.forces:
                     pose, twist = self._state(states[0])
                     last[:] = pose[:, 2] + 2 * np.pi * np.round((last - pose[:, 2]) / (2 * np.pi))
-                    pose[:, 2] = last  # a torsion spring needs whole turns too
+                    pose[:, 2] = last  # a torsion spring needs unwrapped angles
                     states[0].body_f.assign(self._forces(pose, twist))
                 warp.capture_launch(graphs[0])
                 states.reverse()
@@ -256,7 +256,7 @@ class NewtonModel:
         return Recorded(pose, twist, acceleration, stepping, inertias, gravity)
 
     def _state(self, state: Any) -> tuple[Array, Array]:
-        """Poses, whose angles are within a turn, and twists (bodies, 3)."""
+        """Poses (bodies, 3) with angles within one turn, and twists (bodies, 3)."""
         place, twist = state.body_q.numpy().astype(float), state.body_qd.numpy().astype(float)
         angle = 2 * np.arctan2(place[:, 5], place[:, 6])
         return np.column_stack([place[:, :2], angle]), twist[:, [0, 1, 5]]

@@ -1,8 +1,8 @@
-"""The base of engines that run the model of our MuJoCo adapter by another implementation, on a processor or a GPU.
+"""The base class of engines that step MuJoCo's model by another implementation, on a processor or a GPU.
 
-The model is the MjModel that the adapter compiles with the same settings, so that only the implementation differs from
-`mujoco`. Callbacks of C code do not exist there, so models with callbacks are refused. Skates and rolling are refused
-too, since these adapters build no contact.
+Our MuJoCo adapter compiles the MjModel with the same settings, so only the implementation differs from `mujoco`. These
+implementations have no callbacks, so models with callbacks are refused. Skates and rolling are refused too, since these
+adapters build no contact.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 
 def without_contacts(engine: str, title: str) -> Capability:
-    """The capability of our MuJoCo adapter without the joints that need a contact; `title`: the engine in sentences."""
+    """The capability of our MuJoCo adapter without contacts; `title` is the engine's name in sentences."""
     return Capability(
         engine,
         tuple(kind for kind in MUJOCO_CAPABILITY.joints if kind not in (Skate, Roll)),
@@ -45,9 +45,9 @@ def without_contacts(engine: str, title: str) -> Capability:
 class MuJoCoOnDevice(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    settings: the MuJoCo method whose model and options are taken
+    settings: MuJoCo method that provides the model and options
     title: the engine's name in sentences
-    evaluation_cost: CPU time [s] of an evaluation with three bodies, once compiled
+    evaluation_cost: CPU time [s] of an evaluation of three bodies, without compilation
     """
 
     title: ClassVar[str]
@@ -65,7 +65,7 @@ class MuJoCoOnDevice(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s], once compiled."""
+        """Approximate CPU time of a step [s], without compilation."""
         return self.evaluation_cost * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
 
     @validated
@@ -74,18 +74,18 @@ class MuJoCoOnDevice(ExtraEngine):
         return self.settings.enforcement(joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """That of MuJoCo with these settings."""
+        """The regularisation by MuJoCo with these settings."""
         return self.settings.regularisation(mechanism, dt)
 
     def compiled(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> MuJoCoModel:
-        """The model of our MuJoCo adapter, with masses in this unit [kg]; raises Unsupported for one with callbacks."""
+        """The model of our MuJoCo adapter with masses in `unit` [kg]; raises Unsupported for a model with callbacks."""
         model = self.settings.model(mechanism, dt) if unit is None else self.settings.model(mechanism, dt, unit=unit)
         if model.hooks:
             raise Unsupported(f"some rows are written by callbacks of MuJoCo's C code, which {self.title} does not run")
         return model
 
     def refusal(self, reason: Exception) -> Unsupported:
-        """The refusal of a model that the implementation does not know."""
+        """The refusal of a model that the implementation does not accept."""
         return Unsupported(f"{self.title} does not run this model: {' '.join(str(reason).split())}")
 
 

@@ -15,7 +15,7 @@ def npm_folder() -> Path:
 
 
 def installed_version(package: str) -> str:
-    """The version of a distribution, or else of a package of npm. Raises PackageNotFoundError if there is neither."""
+    """The version of a Python distribution or npm package. Raises PackageNotFoundError if it is not installed."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:

@@ -1,11 +1,11 @@
 """The registered engines, and the engines that a reference names.
 
-Entry points of the group `crosscheck.engines` are run in every scene. Those of the group `crosscheck.methods` are
-further methods of an engine, which show the effect of each setting. The value of an entry point is an engine, or a
-tuple or list of engines.
+The engines in the group of entry points `crosscheck.engines` are run in every scene. The group `crosscheck.methods` has
+further methods, which show the effect of single settings. The value of an entry point is an engine, or a tuple or list
+of engines.
 
 An entry point with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, belongs to an engine that few users install.
-These engines, OTHERS, are compared at a few steps, in tables of their own.
+The reports compare these engines (OTHERS) at a few steps in separate tables.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from engines.loading import load as load_values
 
 
 def trouble(value: Any) -> str:
-    """Why a value is no engine, as a clause; empty if it is one. See `engines.contract`."""
+    """A clause on why a value is no engine; empty if the value is an engine. See `engines.contract`."""
     if isinstance(value, type):
         return f"it is a class; give an engine made of it, {value.__name__}()"
     if not isinstance(value, Engine):
@@ -36,10 +36,10 @@ ENGINE = Kind("engine", trouble)
 
 
 def load(reference: str, folder: Path | None = None) -> tuple[Engine, ...]:
-    """The engines of `package.module:NAME`, `path/to/file.py` or `path/to/file.py:NAME`, installed or not.
+    """The engines that a reference names; their packages may be missing.
 
-    `folder`: the base of relative paths, by default the current folder. Raises ValueError, in one line, for a value
-    that can't be imported or is no engine.
+    `folder` is the base of relative paths, by default the current folder. Raises ValueError for a value that can't be
+    imported or is no engine.
     """
     return load_values(reference, ENGINE, folder)
 
@@ -47,11 +47,11 @@ def load(reference: str, folder: Path | None = None) -> tuple[Engine, ...]:
 _variants = registered("crosscheck.engines", ENGINE, method_name)
 _methods = registered("crosscheck.methods", ENGINE, method_name, {method_name(e): e for e in _variants.values})
 
-# The engines that are run in every scene: as shipped, tuned by documented settings, and extended by our code; ideal
-# constraints with integrators of order 1 and 4; and the engines of other distributions.
+# The engines that are run in every scene. These are engines as shipped, tuned by documented settings, and extended by
+# our code. Ideal constraints with integrators of order 1 and 4, and engines of other distributions, belong to them too.
 VARIANTS: tuple[Engine, ...] = _variants.values
 
-# These and the further methods, grouped by engine.
+# VARIANTS and further methods, grouped by engine.
 ENGINES: tuple[Engine, ...] = tuple(
     engine
     for name in dict.fromkeys(engine.name for engine in (*VARIANTS, *_methods.values))
@@ -64,14 +64,14 @@ _optional = registered(
 )
 
 
-# Engines that are extras, installed or not, since their rows may have been measured on another computer.
+# Engines that are extras. They need not be installed, since their rows may come from another computer.
 OTHERS: tuple[Engine, ...] = _optional.values
 INSTALLED: tuple[Engine, ...] = tuple(engine for engine in OTHERS if not engine.missing)
-# By the name of an engine that is not installed: the sentence on how to install it.
+# How to install an engine that is not installed, by its name.
 ABSENT: dict[str, str] = {engine.name: engine.missing for engine in OTHERS if engine.missing}
 TROUBLES = (*_variants.troubles, *_methods.troubles, *_optional.troubles)
 
 
 def mislabelled(elsewhere: bool = True) -> str:
-    """The registered engine whose code belongs to another release than its metadata; see `other_release`."""
+    """A message about a registered engine whose code and metadata belong to different releases; see `other_release`."""
     return other_release((*ENGINES, *INSTALLED), elsewhere)

@@ -1,4 +1,4 @@
-"""A cache of the last results for a mechanism or a rolling pair."""
+"""A cache for results that depend on a mechanism or a rolling pair."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ Cached = TypeVar("Cached", bound=Callable[..., Any])
 def by_identity(size: int = 8) -> Callable[[Cached], Cached]:
     """Cache the last `size` results of a function; the first argument is compared by identity.
 
-    A comparison of all numbers of two mechanisms would take as long as many results. Calls with keyword arguments are
-    not cached.
+    A comparison of all numbers of two mechanisms would be slow. Calls with keyword arguments are not cached.
     """
 
     def with_cache(function: Cached) -> Cached:

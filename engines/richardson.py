@@ -1,7 +1,7 @@
 """Richardson's extrapolation to zero step, and estimates of its error, as functions of arrays.
 
-levels: relative numbers of steps of the combined runs, in ascending order
-powers: powers of the step in the runs' error that the combination removes, one fewer than levels
+levels: relative numbers of steps of the runs, in ascending order
+powers: powers of the step that the combination removes from the error, one fewer than levels
 values (levels, times, ...): results of the runs
 """
 
@@ -16,18 +16,19 @@ from reference.checks import Count, InvalidMechanism, Numbers, validated
 
 Array = NDArray[np.float64]
 
-# Safety factor on the predicted next difference.
+# Safety factor on the predicted error.
 CAUTION = 4
-# The estimated error is at least this share of the last difference. Fitted to 1300 random mechanisms in three engines.
+# The estimated error is at least this share of the last difference. The value was fitted to 1300 random mechanisms in
+# three engines.
 LEAST = 0.5
-# Safety factor on the difference from an extrapolation that has one finer run, with 1.5 times as many steps. The error
-# of that extrapolation is six times smaller, so the difference is the error to within a fifth.
+# Safety factor on the difference from an extrapolation with a further run of 1.5 times as many steps. The error of the
+# further extrapolation is six times smaller, so the difference is the error to within a fifth.
 DECIDED = 1.5
 
 
 @validated
 def extrapolation_weights(levels: tuple[Count, ...], powers: tuple[Count, ...]) -> Array:
-    """Weights w (levels,) of runs at steps dt / level: sum w = 1, and sum w level^-power = 0 for every power."""
+    """Weights w (levels,) of runs at steps dt / level, with sum w = 1 and sum w level^-power = 0 for every power."""
     if len(set(levels)) != len(levels) or len(set(powers)) != len(powers) or len(levels) != len(powers) + 1:
         raise InvalidMechanism(
             f"extrapolation: levels are {levels!r} and powers {powers!r}; all must differ, with one power fewer"
@@ -39,10 +40,10 @@ def extrapolation_weights(levels: tuple[Count, ...], powers: tuple[Count, ...]) 
 
 @validated
 def combine(values: Numbers, weights: Array) -> Array:
-    """The sum of weights (levels,) times values (levels, ...); NaN where a level is not finite.
+    """The weighted sum of values (levels, ...); NaN if a value is not finite.
 
-    It is computed as the finest level plus weighted differences from it. Values that are equal at all levels, such as
-    the start, therefore have no rounding error.
+    The sum is the finest value plus weighted differences from the finest value. If values are equal at all levels, as
+    at t = 0, the sum has no rounding error.
     """
     with np.errstate(all="ignore"):
         finest = values[-1]
@@ -64,13 +65,14 @@ def differences(values: Array, levels: tuple[int, ...], powers: tuple[int, ...])
 def expected_error(
     values: Numbers, levels: tuple[Count, ...], powers: tuple[Count, ...], least: float | Array = LEAST
 ) -> Array:
-    """An estimate (times, ...) of the error of the extrapolation of values (levels, times, ...), all in one unit.
+    """The estimated error (times, ...) of an extrapolation of values (levels, times, ...), all in one unit.
 
-    The `differences` fall with k if the runs have an error expansion. The last difference is the error of the
+    The `differences` decrease with k if the runs have an error expansion. The last difference is the error of the
     extrapolation without the coarsest run. The ratio of successive differences predicts the remaining error. Ratios
-    rise in asymptotic series, so the larger of the last ratio and its extrapolation is used. The estimate is CAUTION
-    times the prediction. It is at least the share `least` (times,) of the last difference, which may cross zero. It is
-    at most the error that one wrong run would cause. Ratios are those of the largest differences up to each time.
+    increase in asymptotic series, so the larger of the last ratio and its extrapolation is used. The estimate is
+    CAUTION times the prediction. It is at least the share `least` (times,) of the last difference, which may cross
+    zero. It is at most the error that a single wrong run would cause. Ratios use the largest differences up to each
+    time.
     """
     steps = differences(values, levels, powers)
     with np.errstate(all="ignore"):
@@ -88,12 +90,12 @@ def expected_error(
 def decided_error(
     values: Array, combined: Array, further: Array, levels: tuple[int, ...], powers: tuple[int, ...]
 ) -> Array:
-    """The error of `combined` by comparison with an extrapolation in which `further` replaces the coarsest run."""
+    """The error of `combined`, estimated from an extrapolation in which `further` replaces the coarsest run."""
     weights = extrapolation_weights((*levels[1:], further_level(levels)), powers)
     with np.errstate(all="ignore"):
         return DECIDED * np.abs(combine(np.concatenate([values[1:], further[None]]), weights) - combined)
 
 
 def further_level(levels: tuple[int, ...]) -> int:
-    """The level of the deciding run: 1.5 times the finest level, rounded up."""
+    """The level of the further run, which is 1.5 times the finest level, rounded up."""
     return -(-3 * levels[-1] // 2)

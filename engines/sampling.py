@@ -1,4 +1,4 @@
-"""The sampling loop of the adapters, and accelerations, angles and reactions of the sampled states."""
+"""The sampling loop of the adapters; accelerations, angles and reactions of sampled states."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ def sampled(
     record: Callable[[int], object],
     record_before: Callable[[int], object] | None = None,
 ) -> float:
-    """Step a model and record its states; returns the CPU time of stepping and recording [s].
+    """Step a model, record its states, and return the CPU time [s] of stepping and recording.
 
-    steps: the number of steps before each sample but the first
-    advance(count): takes this number of steps
+    steps: number of steps before each sample after the first
+    advance(count): takes `count` steps
     record(sample): stores the state of a sample
     record_before(sample): stores values one step before a sample
     The loop ends early if `advance` or `record` returns True. The CPU time excludes the recording of the start.
@@ -49,11 +49,11 @@ def sampled_with_differences(
     state: Callable[[], tuple[Any, Any]],
     velocity: Callable[[], Any],
 ) -> tuple[Array, Array, Array, float]:
-    """Positions, velocities and accelerations (samples + 1, ...), and the CPU time [s].
+    """Positions, velocities and accelerations (samples + 1, ...), and the CPU time [s] of stepping.
 
-    counts: the number of samples, and of steps between them
+    counts: number of samples, and number of steps between samples
     state(): the current positions and velocities
-    Accelerations are changes of `velocity()` over the last step of dt [s]; NaN at t = 0.
+    Accelerations are changes of `velocity()` over the last step, divided by dt [s]; they are NaN at t = 0.
     """
     states: list[tuple[Any, Any]] = []
     before: list[Any] = []
@@ -63,7 +63,7 @@ def sampled_with_differences(
     )
     position, speed = (np.array(values, dtype=float) for values in zip(*states, strict=True))
     acceleration = np.full_like(speed, np.nan)
-    last = np.array(before[: len(speed) - 1], dtype=float).reshape(speed[1:].shape)  # a lost sample has one more
+    last = np.array(before[: len(speed) - 1], dtype=float).reshape(speed[1:].shape)  # `before` may have one more
     with np.errstate(all="ignore"):
         acceleration[1:] = (speed[1:] - last) / dt
     return position, speed, acceleration, stepping
@@ -79,10 +79,10 @@ def reactions(
 ) -> Array:
     """Reactions (samples, rows) from accelerations and the engine's inertias and gravity.
 
-    They are NaN at samples without finite accelerations.
+    Reactions are NaN at samples whose accelerations are not finite.
     """
     out = np.full((len(pose), mechanism.row_count), np.nan)
-    # The factorisation raises an exception for numbers whose squares are infinite.
+    # The factorisation fails for numbers whose squares are infinite.
     valid = np.all((np.abs(pose) < 1e100) & (np.abs(acceleration) < 1e100), axis=(1, 2))
     if mechanism.row_count and np.any(valid):
         with np.errstate(all="ignore"):
@@ -93,8 +93,8 @@ def reactions(
 def unwrapped(angle: Array, rate: Array, start: Array, spacing: float) -> Array:
     """Unwrapped angles (times, bodies) from angles that an engine wraps into one turn.
 
-    Whole turns follow from a prediction by the trapezoidal rule between samples, which is valid if the derivative of
-    the angular acceleration times spacing^3 / 12 is below pi.
+    The trapezoidal rule between samples predicts whole turns. The prediction is valid if the derivative of the angular
+    acceleration times spacing^3 / 12 is below pi.
     """
     out = angle.copy()
     out[0] = start
