@@ -1,4 +1,4 @@
-"""The table of all engines at a glance, on the first screen of the index, and the engines that are not compared."""
+"""The short table of all engines at the top of the index, and the engines that are not compared."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ ORDER_SCENE = "free_four_bar"
 
 @cache
 def sentences() -> Mapping[str, Mapping[str, str]]:
-    """The tables of `at_a_glance.toml`: "engines" and "absent", each name -> sentence."""
+    """The tables "engines" and "absent" of `at_a_glance.toml`; a table maps an engine's name to a sentence."""
     return tomllib.loads(Path(__file__).with_name("at_a_glance.toml").read_text(encoding="utf-8"))
 
 
 def glance_table(pages: Mapping[Page, Material], lines: Sequence[EngineLine], scenes: Mapping[str, str]) -> str:
-    """A Markdown table with a row for each registered engine; empty unless the tasks of the page of engines were run.
+    """A Markdown table with a row for each registered engine; empty if no task of the page "engines" was run.
 
-    lines: the rows of the compared scenes by engine. scenes: the names of these scenes -> titles.
+    lines: rows by compared scene and engine. scenes: name of a compared scene -> title.
     """
     material = next((material for page, material in pages.items() if page.name == ENGINES_PAGE.name), Material({}))
     answers = {task.method.name: answer for task in MATRIX if (answer := material.finished(task)) is not None}
@@ -50,7 +50,7 @@ def glance_table(pages: Mapping[Page, Material], lines: Sequence[EngineLine], sc
 
 
 def _least_error(line: EngineLine | None) -> str:
-    """The least error within the CPU budget by any method of an engine, or the reason why there is none."""
+    """The least error of an engine's methods within the CPU budget, or the reason why there is no error."""
     built = [column for column in line.columns if not absence_reason(line, column)] if line is not None else []
     if line is None or not built:
         return DASH

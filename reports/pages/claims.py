@@ -1,4 +1,4 @@
-"""Claims of pages as predicates on rows and motions. A report is not published if the rows contradict a claim.
+"""Claims of pages as predicates on rows and motions. A report is not published if a claim is false.
 
 The claims of an experiment are Jinja expressions in `experiments.md`, which can use the functions of `_names` and the
 experiment's context. Claims that belong to no experiment are functions in this module.
@@ -37,7 +37,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         return len(values) > 1 and all(fine < coarse / factor for coarse, fine in pairwise(values))
 
     def stays(method: str, skip: int = 0) -> bool:
-        """Whether errors at neighbouring steps differ by less than a quarter; the first `skip` errors are ignored."""
+        """Whether neighbouring errors differ by less than a quarter; the first `skip` errors are ignored."""
         values = errors((method,), "angle")[skip:]
         return len(values) > 1 and all(0.8 < fine / coarse < 1.25 for coarse, fine in pairwise(values))
 
@@ -74,7 +74,8 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "largest": lambda name, *methods: max(errors(methods, name)),
         "falls": falls,
         "stays": stays,
-        "ratio": lambda method: rows(method)[-1].angle / rows(method)[-2].angle,  # of errors at the two smallest steps
+        # ratio of the errors at the two smallest steps
+        "ratio": lambda method: rows(method)[-1].angle / rows(method)[-2].angle,
         "above": above,
         "share": share,
         "alike": same_as_in,
@@ -110,7 +111,7 @@ def settings_of_a_loop(material: Material) -> bool:
 
 
 def _outcomes_of_map(name: str) -> dict[str, dict[float, tuple[Outcome, ...]]]:
-    """Method -> parameter value -> outcomes in one map of the atlas, the largest step first."""
+    """Method -> parameter value -> outcomes at decreasing steps, in one map of the atlas."""
     outcomes: dict[str, dict[float, tuple[Outcome, ...]]] = {}
     for column in stored_columns():
         if column.subject == name:
@@ -133,7 +134,7 @@ def maps(material: Material) -> bool:
     )
 
 
-# Page -> its claim that belongs to no experiment.
+# Page -> claim that belongs to no experiment.
 PAGE_CLAIMS: Mapping[str, Callable[[Material], bool]] = {
     "atlas": maps,
     "settings": settings_of_a_loop,
@@ -141,7 +142,7 @@ PAGE_CLAIMS: Mapping[str, Callable[[Material], bool]] = {
 
 
 def contradicted(pages: Mapping[Page, Material]) -> list[str]:
-    """The claims, as "page, experiment: claim", that are false or that need rows or motions that are missing."""
+    """The claims that are false or that lack rows or motions, as texts "page, experiment: claim"."""
     return [where for page, material in pages.items() for where, claim in _claims(page, material) if not _holds(claim)]
 
 

@@ -35,15 +35,14 @@ def sweeps(count: int) -> Engine:
 def cells(
     scene: Scene, engines: Iterable[Engine], every: Iterable[int], samples: int | None = None
 ) -> tuple[Cell, ...]:
-    """The cells of a scene in each engine with each number of steps between samples (`every`)."""
+    """The cells of a scene for all engines and all numbers of steps between samples (`every`)."""
     steps = tuple(every)
     return tuple(Cell(scene, engine, count, "failure", samples) for engine in engines for count in steps)
 
 
 def steps_for(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
-    """The numbers of steps between samples with which an engine is run.
-
-    For an extrapolated variant only the first is left: at this largest step its error is already rounding.
+    """The numbers of steps between samples for an engine. An extrapolated variant is run at the largest step only,
+    because its error is then already at rounding.
     """
     return every[:1] if engine.variant == "extended" else every
 
@@ -173,7 +172,7 @@ def _written_deviations() -> dict[str, list[dict[str, Any]]]:
 
 
 def deviations(page: str) -> dict[tuple[str, str, str], Deviation]:
-    """The known deviations of a page by (scene, method, check), from `deviations.toml`."""
+    """The known deviations of a page from `deviations.toml`, by (scene, method, check)."""
     by_check: dict[tuple[str, str, str], Deviation] = {}
     for entry in _written_deviations()[page]:
         scenes = dict(entry)

@@ -34,9 +34,9 @@ from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template
 from reports.write.unmeasured import UNKNOWN_MARK, UNMEASURED
 
-# Size of a picture in inches. In a browser the picture is 360 pixels wide, which is the width of a telephone's screen.
+# Size of a picture in inches. In a browser the picture has the width of a telephone's screen, 360 pixels.
 PICTURE_WIDTH, PICTURE_HEIGHT = 3.75, 2.55
-# (dashes, mark, whether the mark is filled) of the lines of a picture, which may have the same colour.
+# (dashes, mark, whether the mark is filled) of the lines in a picture. Lines may have the same colour.
 LINE_STYLES = ((":", "o", False), ("--", "s", True), ("-", "D", True), ("-.", "^", False))
 STEP_AXIS, CPU_AXIS, RELEASE_AXIS = "step [ms]", "CPU time [ms per simulated second]", "release"
 TENTH_OF_MS = 1e-4  # s
@@ -44,7 +44,7 @@ TENTH_OF_MS = 1e-4  # s
 
 @dataclass(frozen=True)
 class PlottedLine:
-    """A label and points (x, y) of one engine; x is a number or a release."""
+    """A line of a picture with the points (x, y) of one engine; x is a number or a release."""
 
     label: str
     engine: str
@@ -52,7 +52,7 @@ class PlottedLine:
 
 
 def of_rows(label: str, rows: Rows, name: str, x: str = STEP_AXIS) -> PlottedLine:
-    """The errors of a quantity against step or CPU time; the largest step is first."""
+    """The line with the errors of a quantity against step or CPU time; the largest step is first."""
     engine = rows[0].engine if rows else ""
     if x == CPU_AXIS:
         usable = [row for row in rows.known(name) if row.cpu > 0 and Outcome(row.outcome).comparable]
@@ -61,7 +61,7 @@ def of_rows(label: str, rows: Rows, name: str, x: str = STEP_AXIS) -> PlottedLin
 
 
 def of_releases(label: str, entries: Iterable[Entry]) -> PlottedLine:
-    """The errors of one scene and method against the release; the oldest is first."""
+    """The line with the errors of one scene and method against the release; the oldest release is first."""
     usable = [entry for entry in entries if entry.comparable and entry.error > 0]
     engine = usable[0].engine if usable else ""
     return PlottedLine(label, engine, tuple((entry.version, entry.error) for entry in usable))
@@ -118,7 +118,7 @@ class Finding:
     """A finding with its numbers.
 
     title, text: Markdown, without the link to `page`.
-    contradicted: the claims that the rows do not confirm.
+    contradicted: claims that the rows do not confirm.
     lines, x, y: the lines of the picture and the labels of its axes.
     """
 
@@ -152,12 +152,12 @@ class Finding:
 
 
 def error_at(rows: Rows, step: float, name: str) -> float:
-    """The error of a quantity at a step [s], of a failed run too; NaN if no row has this step."""
+    """The error of a quantity at a step [s]; NaN if no row has this step. Failed runs count."""
     return next((error for row_step, error in rows.points(name) if is_step(row_step, step)), math.nan)
 
 
 def least(rows: Rows, name: str) -> float:
-    """The least error of a quantity, failed runs included; NaN without rows."""
+    """The least error of a quantity; NaN without rows. Failed runs count."""
     return min((error for _, error in rows.points(name)), default=math.nan)
 
 
@@ -178,7 +178,7 @@ EXPRESSION_NAMES: Mapping[str, Any] = {
 
 
 def releases(sources: Sources) -> dict[str, Any]:
-    """Errors of stiff loops in releases of MuJoCo, and the cost of a step as shipped relative to the newest release."""
+    """Errors of stiff loops in releases of MuJoCo, and costs of a default step relative to the newest release."""
     entries, versions = released().of("mujoco"), released().versions("mujoco")
     lines = {
         scene: [entry for entry in entries if (entry.scene, entry.variant) == (scene, "tuned")]
@@ -194,7 +194,7 @@ def releases(sources: Sources) -> dict[str, Any]:
 
 
 def trees(sources: Sources) -> dict[str, Any]:
-    """Acceleration errors of random trees with loops in MuJoCo: with the settings "tuned", and with our code."""
+    """Acceleration errors of MuJoCo's variants "tuned" and "extended" in random trees with loops."""
     newest = released().versions("mujoco")[-1]
     entries = [entry for entry in released().of("mujoco") if entry.quantity == ACCELERATION]
     last = {entry.variant: entry for entry in entries if entry.version == newest}
@@ -225,7 +225,7 @@ FAULTS_OF_SCRIPTS: Mapping[str, str] = {
 
 
 def faults(sources: Sources) -> dict[str, Any]:
-    """The faults that the scripts show in the installed releases, and the number of scripts without such a result."""
+    """The faults that scripts show in the installed releases, and the number of scripts that show no fault."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
         sentences, release = [], UNKNOWN_MARK
@@ -247,8 +247,8 @@ def faults(sources: Sources) -> dict[str, Any]:
 def exact(sources: Sources) -> dict[str, Any]:
     """CPU times on the free four-bar.
 
-    `fine`: the least CPU time for an error of 1e-6 rad, by engine. `wins`: for each target error and engine, whether
-    `lagrange` is cheaper.
+    `fine`: engine -> least CPU time for an error of 1e-6 rad. `wins`: whether `lagrange` is cheaper, by target and
+    engine.
     """
     settings = advice(sources.rows.of("free_four_bar"), "angle")
     rows = {(setting.engine, target): setting.row for setting in settings for target in setting.targets}
@@ -297,7 +297,7 @@ def finding(name: str, sources: Sources) -> Finding:
 
 
 def findings(pages: Mapping[Page, Material]) -> list[Finding]:
-    """The findings, in the order of `findings.toml`, that the rows confirm and that a page of `pages` explains."""
+    """The findings that the rows confirm and that a page in `pages` explains, in the order of `findings.toml`."""
     sources, names = Sources.of(pages), {page.name for page in pages}
     candidates = (finding(name, sources) for name in FINDING_PLANS)
     return [candidate for candidate in candidates if candidate.is_sound and candidate.page in names]

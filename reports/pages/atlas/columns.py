@@ -1,4 +1,4 @@
-"""Columns of stability maps, and the file that stores them. A column is one method at one parameter value."""
+"""Columns of stability maps, and their file. A column has the runs of one method at one parameter value."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ from reports.write.csv_files import read_lines
 
 FILE = "atlas.csv"
 FORCE_SAMPLES = 20
-# Letter of a cell that was not run, because the neighbours above and below have the same outcome.
+# Letter of a cell that was not run, because its neighbours at larger and smaller steps have the same outcome.
 NOT_RUN = "="
-# If two outcomes have the same letter, it is read as the first of these outcomes.
+# If two outcomes have the same letter, the letter is read as the first outcome.
 BY_LETTER = {outcome.letter: outcome for outcome in reversed(Outcome)}
 RunCells = Callable[[list[Cell]], Mapping[Cell, Measurement]]
 
 
 @dataclass(frozen=True)
 class StoredColumn:
-    """A column of a map in the file, the largest step first.
+    """A column of a map as the file stores it; the largest step is first.
 
     subject: the map's name.
     longest: the largest step [s].
     counts: the number of steps of each run.
     outcomes: `Outcome.letter` or NOT_RUN for each step.
     errors: the decimal logarithm of the angle error [rad]; NaN for cells that were not run or did not finish.
-    gives: the result of `tearing_step` [s].
-    left: the result of `residual_of_sweeps`.
+    gives: the step at which a joint tears, from `tearing_step` [s].
+    left: the remaining fraction of the slowest mode, from `residual_of_sweeps`.
     """
 
     subject: str
@@ -102,8 +102,8 @@ def columns_of(stability_map: StabilityMap, engines: Iterable[Engine], points: i
 def run_columns(columns: Sequence[MapColumn], run: RunCells, stride: int) -> list[dict[int, Measurement]]:
     """The rows of each column by the index of the step.
 
-    First every `stride`-th step is run. Then, between two steps with different outcomes, the middle step is run until
-    the two steps are neighbours. A region that is narrower than the stride may be missed. Each round calls `run` once.
+    First, every `stride`-th step is run. Then bisection finds the border between two steps with different outcomes. A
+    region that is narrower than the stride may be missed. `run` is called once for each round of bisection.
     """
     rows: list[dict[int, Measurement]] = [{} for _ in columns]
     wanted = [sorted({*range(0, len(column.steps), stride), len(column.steps) - 1}) for column in columns]
@@ -150,7 +150,8 @@ def _power(row: Measurement) -> float:
 
 
 def tearing_step(scene: Scene, mechanism: Mechanism, engine: Engine, least: float, largest: float) -> float:
-    """The smallest step [s] at which the engine's declared regularisation opens a joint so far that it counts as torn.
+    """The smallest step [s] at which a joint with the engine's declared regularisation opens so far that it counts as
+    torn.
 
     With `engines.Regularisation`, J a = bias - damping slip - stiffness gap - compliance A reaction, where A is the
     diagonal of J M^-1 J^T. The steady gap is therefore (compliance A reaction) / stiffness. In an engine that omits the
@@ -192,7 +193,7 @@ def residual_of_sweeps(mechanism: Mechanism, engine: Engine) -> float:
 
 
 def as_csv(columns: Iterable[StoredColumn]) -> str:
-    """The file's text, with sorted columns. `counts` is empty in a line with the same counts as the line before."""
+    """The file's text, with sorted columns. `counts` is empty in a line if the line above has the same counts."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([field.name for field in fields(StoredColumn)])
@@ -209,7 +210,7 @@ def as_csv(columns: Iterable[StoredColumn]) -> str:
 
 
 def read(path: Path) -> tuple[StoredColumn, ...]:
-    """The columns of an atlas file; none if it does not exist. Raises ValueError for any other file."""
+    """The columns of an atlas file; empty if the file does not exist. Raises ValueError if it is not an atlas file."""
     if not path.is_file():
         return ()
     columns: list[StoredColumn] = []

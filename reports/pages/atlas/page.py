@@ -46,7 +46,7 @@ def stored_columns(path: Path = RESULTS / FILE) -> tuple[StoredColumn, ...]:
 
 
 def columns_of(stability_map: StabilityMap) -> list[StoredColumn]:
-    """The columns of a map with the names of variants on pages. Registered methods come first, in their order."""
+    """The columns of a map, with displayed names of variants. Registered methods come first."""
     from engines.registry import VARIANTS, method_name
 
     order = {method_name(engine): index for index, engine in enumerate(VARIANTS)}
@@ -58,7 +58,7 @@ def columns_of(stability_map: StabilityMap) -> list[StoredColumn]:
 
 
 def outcome_table(columns: Sequence[StoredColumn]) -> str:
-    """A Markdown table with the shares of outcomes and the largest steps for ERROR_BOUNDS of each method."""
+    """A Markdown table with a line for each method: the shares of outcomes, and the largest steps for ERROR_BOUNDS."""
     present = [outcome for outcome in Outcome if any(outcome in column.outcome_of_steps for column in columns)]
     body = []
     for method in dict.fromkeys(column.method for column in columns):
@@ -71,7 +71,7 @@ def outcome_table(columns: Sequence[StoredColumn]) -> str:
 
 
 def largest_step(columns: Sequence[StoredColumn], bound: float) -> str:
-    """The largest step such that, at it and at all smaller steps, all runs finish with errors below `bound` [rad].
+    """The largest step for which all runs at this and at smaller steps finish with errors below `bound` [rad].
 
     The result is a dash if there is no such step. A cell that was not run has the error at the next larger step.
     """
@@ -97,9 +97,10 @@ def _errors_of_steps(column: StoredColumn) -> list[float]:
 
 
 def agreement(columns: Sequence[StoredColumn]) -> tuple[int, int]:
-    """(number of columns whose tearing step is predicted within a factor of three, number of columns counted).
+    """The number of columns whose tearing step is predicted within a factor of three, and the number of counted
+    columns.
 
-    A column is counted if it has a prediction, a torn run at the largest step and none at the smallest.
+    A column counts if it has a prediction, its run at the largest step is torn, and its run at the smallest is not.
     """
     near = count = 0
     for column in columns:
@@ -139,9 +140,8 @@ def figures(material: Material) -> Mapping[str, str]:
 
 
 def atlas_map(stability_map: StabilityMap, columns: Sequence[StoredColumn]) -> Figure:
-    """A panel for each method, with regions of equal outcome over parameter and step.
-
-    Axes are logarithmic, except that of an integer parameter.
+    """A panel for each method, with regions of equal outcome over parameter and step. The axis of an integer parameter
+    is linear; other axes are logarithmic.
     """
     methods = list(dict.fromkeys(column.method for column in columns))
     across = min(2, len(methods)) or 1
@@ -188,7 +188,7 @@ def _legend_entries(
         labels.append(SHADE_NAMES[role])
     for outcome in (outcome for outcome in Outcome if outcome in regions):
         face = Rectangle((0, 0), 1, 1, facecolor=outcome_colour(outcome), edgecolor=LIGHT.quiet)
-        # The hatch is a patch of its own, because otherwise its colour would not follow the reader's colour scheme.
+        # The hatch is a separate patch, because otherwise its colour would not follow the reader's colour scheme.
         hatch = Rectangle((0, 0), 1, 1, fill=False, edgecolor=LIGHT.quiet, hatch=outcome.hatch or None)
         handles.append((face, hatch))
         labels.append(str(outcome))
@@ -200,9 +200,8 @@ def _legend_entries(
 
 
 def edges(values: Sequence[float], whole: bool) -> np.ndarray:
-    """The borders between cells with increasing middles `values`, and the two ends.
-
-    A border is halfway between two middles: arithmetically for integers (`whole`), geometrically otherwise.
+    """The edges of cells with the increasing centres `values`. An edge is the arithmetic mean of two centres for
+    integers (`whole`), otherwise their geometric mean.
     """
     middles = np.asarray(values, dtype=float) if whole else np.log(values)
     if len(middles) == 1:
@@ -214,7 +213,7 @@ def edges(values: Sequence[float], whole: bool) -> np.ndarray:
 
 
 def regions_of_steps(column: StoredColumn) -> list[Outcome | str]:
-    """For each step the shade of its error, or the outcome if the run can't be compared."""
+    """The shade of the error at each step, or the outcome of a run that can't be compared."""
     return [
         shade(error) if outcome.comparable else outcome
         for outcome, error in zip(column.outcome_of_steps, _errors_of_steps(column), strict=True)

@@ -26,7 +26,7 @@ MIN_STEPS = 10  # number of steps of a run at the largest step
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """A map of outcomes over step and parameter. `subjects.toml` explains the fields that are not explained here.
+    """A map of outcomes over step and parameter. `subjects.toml` explains the other fields.
 
     make: parameter value -> scene.
     frequency: scene -> frequency of the fastest motion [rad/s], which predicts the step of failure.
@@ -45,7 +45,7 @@ class StabilityMap:
     remark: str = ""
 
     def at(self, points: int) -> tuple[float, ...]:
-        """The values form a geometric sequence; integer values form an arithmetic sequence without repetitions."""
+        """The parameter values: a geometric sequence, or for integers an arithmetic sequence without repetitions."""
         low, high = self.values
         if self.whole:
             return tuple(map(float, dict.fromkeys(np.linspace(low, high, points).round().tolist())))
@@ -65,13 +65,13 @@ class StabilityMap:
 
 
 def near_the_largest_offset(gap: float) -> DrivenSliderCrank:
-    """A driven slider-crank; its offset is (1 - gap) times the largest possible offset."""
+    """A driven slider-crank with the offset (1 - gap) times the largest possible offset."""
     plain = DrivenSliderCrank()
     return replace(plain, offset=(1 - gap) * (plain.rod - plain.crank), angle=math.pi / 2)
 
 
 def rod_rate(scene: DrivenSliderCrank) -> float:
-    """The largest rate of the rod over a turn of the crank [rad/s]; the angles are dense where the rod is upright."""
+    """The largest rate of the rod during a turn of the crank [rad/s]. Sampled angles are dense near the upright rod."""
     angles = np.concatenate([np.linspace(0, 2 * math.pi, 721), math.pi / 2 * 3 + np.geomspace(1e-7, 0.1, 200)])
     return float(scene.rate * np.abs(scene.shape.rates(angles)[0]).max())
 
@@ -83,7 +83,7 @@ def short_trailer(length: float) -> CarAndTrailer:
 
 
 def ellipse(ratio: float) -> RollingEllipse:
-    """An ellipse that starts on its flat side, so slowly that it keeps contact."""
+    """An ellipse that starts on its flat side and is so slow that it keeps contact."""
     plain = RollingEllipse()
     return replace(plain, along_y=plain.along_x * ratio, start_rate=1.0, duration=1.0)
 
@@ -98,7 +98,8 @@ def stiffest_hanging(scene: LinkPendulum) -> float:
     return float(scene.chain.modes()[0][-1])
 
 
-# Map -> (scene at a parameter value, frequency of a scene). Chains last 0.5 s: chaos has not yet amplified errors much.
+# Map -> (scene at a parameter value, frequency of a scene). Motions of chains last 0.5 s, because chaos amplifies
+# errors in longer motions.
 SCENES_AND_FREQUENCIES: Mapping[str, tuple[Callable[[float], Scene], Callable[[Any], float]]] = {
     "coupler": (lambda x: FreeFourBar(density=(1.0, x, 1.0)), lambda scene: 1 / scene.mechanism().time_scale),
     "rate": (lambda x: DrivenFourBar(rate=x, revolutions=x * 0.5 / (2 * math.pi)), lambda scene: scene.rate),

@@ -1,4 +1,4 @@
-"""The page of centrodes: the coupler's motion in a four-bar as rolling, and errors of instant centres in engines."""
+"""The page of centrodes: the motion of a coupler as rolling of two curves, and errors of instant centres in engines."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ MAX_POSES_CHECKED = 101
 
 
 def returned(curves: Centrodes) -> tuple[float, float]:
-    """(largest distance [m] of the body's origin in the poses and in rolling, checked range of rotation [rad]).
+    """The largest distance [m] between the body's origins in the poses and in the rolling, and the checked rotation
+    [rad].
 
     Raises InvalidMechanism if the curves can't roll on each other.
     """
@@ -49,7 +50,7 @@ def returned(curves: Centrodes) -> tuple[float, float]:
 
 
 def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indices: Sequence[int], body: int) -> Figure:
-    """A panel for each of `indices`. `poses` (samples, bodies, 3) and `curves` have the same order of samples."""
+    """A panel for each sample in `indices`. `poses` (samples, bodies, 3) and `curves` have the same samples."""
     with drawing(4.4) as figure:
         for panel, index in zip(figure.subplots(1, len(indices), sharex=True, sharey=True), indices, strict=True):
             bare(panel, "")
@@ -78,7 +79,8 @@ def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indice
 
 
 def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
-    """Write the names of pins: of ground pins beyond the bar's end, of other pins outside of the linkage."""
+    """Write the names of pins. The name of a ground pin is beyond the bar's end, that of another pin outside of the
+    linkage."""
     pins, bars = {}, {}
     for joint in mechanism.joints:
         if isinstance(joint, Pin) and joint.second is not None:
@@ -95,7 +97,8 @@ def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
 
 
 def draw_rate(curves: Centrodes) -> Figure:
-    """A chart of ds/dtheta from the centre's path and from the curvatures, and of their relative difference."""
+    """A chart of ds/dtheta, from the path of the instant centre and from both curvatures, with the relative
+    difference."""
     total = 1 / (curves.space_curvature + curves.body_curvature)
     degrees = np.degrees(curves.theta)
     with drawing(4.0) as figure:
@@ -112,10 +115,10 @@ def draw_rate(curves: Centrodes) -> Figure:
 
 
 COUPLER_INDEX = 1
-# Crank angles [rad] between which the coupler's rate keeps its sign; it vanishes at 2.80 and 5.94 rad.
+# Range of crank angles [rad] without a zero of the coupler's rate; its zeros are at 2.80 and 5.94 rad.
 ARC = (3.5, 5.5)
 ARC_SAMPLES = 401
-# At the ends of the arc, which this leaves out, the second derivative of a spline is least accurate.
+# Samples without the ends of the arc, where the second derivative of a spline is least accurate.
 INNER = slice(20, -20)
 CENTRODE_STEPS = (1, 10)  # steps between samples of the scene
 CENTRODE_CELLS = tuple(Cell(DrivenFourBar(), engine, every) for engine in VARIANTS for every in CENTRODE_STEPS)
@@ -147,7 +150,8 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def round_trip(curves: Centrodes) -> float:
-    """The largest distance [m] between the motion of the rolling curves and the exact motion, between the samples."""
+    """The largest distance [m] between the motion of the rolling curves and the exact motion, also between the
+    samples."""
     between = DrivenFourBar().motion(times(2 * ARC_SAMPLES)[1:-1]).pose[:, COUPLER_INDEX]
     rolling = curves.rolling()
     low, high = rolling.limits
@@ -163,7 +167,7 @@ def agreement(curves: Centrodes) -> float:
 
 
 def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
-    """(cell, centre error [m], angle error [rad], rate error [rad/s]) of each cell that was run."""
+    """For each cell with a stored motion: (cell, centre error [m], angle error [rad], rate error [rad/s])."""
     low, high = times(2)
     rows = []
     for cell, run in material.motions(CENTRODE_CELLS).items():
@@ -179,7 +183,7 @@ def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
 
 
 def largest(values: np.ndarray) -> float:
-    """The largest value; NaN if there is no value or if a value is NaN."""
+    """The largest value; NaN for an empty array or with a NaN in it."""
     return float(values.max()) if values.size else math.nan
 
 
@@ -202,7 +206,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
-    """A sentence on the method with the largest ratio of centre error to angle error."""
+    """A sentence on the run with the largest ratio of centre error to angle error."""
     ratios = [(centre / angle, row) for row in rows if (angle := row[2]) > 0 and math.isfinite(centre := row[1])]
     if not ratios:
         return ""

@@ -1,8 +1,8 @@
-"""The page of engines: the elements that each engine builds, error against CPU time, and the velocity term of loops.
+"""The page of engines: elements that each engine builds, error against CPU time, and the velocity term of loops.
 
-The velocity term of a loop is the right-hand side of J q'' = -J' q' in the tree's coordinates q. An engine that leaves
-it out solves J q'' = 0. At instants of the exact motion, where gap and slip vanish, the engine's reactions are compared
-with the solutions of both equations. Rows that the engine does not declare as regularised have the term in both.
+The velocity term of a loop is the right-hand side of J q'' = -J' q' in the tree's coordinates q. An engine without it
+solves J q'' = 0. The engine's reactions at instants of the exact motion are compared with the solutions of both
+equations. Only rows that the engine declares as regularised differ between the equations.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ _WHEELS = tuple(Body(name, 1.0, 0.1, (x, 0.0, 0.0)) for name, x in (("first", 0.
 _AXLES = tuple(Pin(f"axle of the {body.name}", None, body.name, body.pose[:2], (0.0, 0.0)) for body in _WHEELS)
 _TURNS = (Term(None, "first", 1.0), Term(None, "second", 2.0))
 _DOWN = (0.0, -10.0)
-# Line of the table -> a mechanism with this element. A test demands an example of each class of joints and forces.
+# Line of the table -> a mechanism with this element. There is an example of each class of joints and forces.
 ELEMENT_EXAMPLES = {
     "hinge": WORLD["swinging bar"],
     "loop": WORLD["swinging parallelogram"],
@@ -89,8 +89,8 @@ HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 class Capabilities(BuildingTask):
     """The elements that an engine builds.
 
-    The values are YES, CONTACT, CODE, HAS_NONE, NOT_BUILT or TOO_OLD for each line of ELEMENT_EXAMPLES, and the reason
-    of a refusal by `reason_key`. The values `reactions` and `width` are found in a run.
+    Each line of ELEMENT_EXAMPLES has a word from YES to TOO_OLD, and `reason_key(line)` has the reason of a refusal.
+    `reactions` and `width` are determined by a run.
     """
 
     description: ClassVar[str] = "what it builds"
@@ -102,13 +102,13 @@ class Capabilities(BuildingTask):
         run = self.method.build(WORLD["swinging bar"], BUILD_STEP)(4, 1)
         finite = [bool(np.isfinite(reaction).all()) for reaction in run.reaction]
         values["reactions"] = "yes" if all(finite) else "not at the start" if all(finite[1:]) else "no"
-        # Velocities are numbers of the engine itself. Poses may be computed from its coordinates by our code.
+        # Velocities are the engine's numbers, whereas our code may compute poses from the engine's coordinates.
         velocity = run.twist[1:]
         values["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
         return values
 
     def _build(self, mechanism: Mechanism) -> tuple[str, str]:
-        """(word of the table, reason of a refusal)."""
+        """The word for the table, and the reason of a refusal or ""."""
         try:
             self.method.build(mechanism, BUILD_STEP)
         except Unsupported as reason:
@@ -149,12 +149,12 @@ def started_at(mechanism: Mechanism, pose: Array, twist: Array) -> Mechanism:
 def reactions_with(
     mechanism: Mechanism, soft: tuple[bool, ...], complete: bool, compliance: Array | float = 0.0
 ) -> Array:
-    """The reactions (rows,) [N] in the initial state.
+    """The reactions (rows,) [N, N m] in the initial state.
 
     Args:
         soft: whether each row is regularised (rows,).
         complete: whether regularised rows have their velocity term.
-        compliance: of each row [1/kg] (rows,).
+        compliance: compliance of each row [1/kg, 1/(kg m^2)] (rows,).
     """
     rows = mechanism.rows(mechanism.pose)
     bias = mechanism.bias(mechanism.pose, mechanism.twist)
@@ -171,7 +171,8 @@ def reactions_with(
 
 @dataclass(frozen=True)
 class VelocityTerm(BuildingTask):
-    """The relative errors (instants,) of the equations with and without the velocity term for an engine's reactions."""
+    """Relative differences (instants,) of an engine's reactions from the equations with and without the velocity
+    term."""
 
     description: ClassVar[str] = "the velocity term of a loop"
 
@@ -196,7 +197,7 @@ class VelocityTerm(BuildingTask):
 FREE_LOOP = FreeFourBar()
 MILLISECOND = round(FREE_LOOP.spacing / 1e-3)  # steps of 1 ms between samples
 
-# Quantity -> scenes of the chart, one of each mechanism whose page compares this quantity.
+# Quantity -> scenes of its chart. There is a scene of each mechanism whose page compares this quantity.
 CHARTED = {
     "angle": (
         *("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10", "n_four_bar_2"),
@@ -207,7 +208,7 @@ CHARTED = {
 SCENE_BY_NAME: dict[str, Scene] = {scene.name: scene for scene in SCENES}
 CHARTED_SCENES = tuple(SCENE_BY_NAME[name] for names in CHARTED.values() for name in names)
 
-# Models that take long to compile are run at one step only, in one scene with a loop and in one without.
+# Engines that compile slowly are run at one step only, in a scene with a loop and in a scene without a loop.
 COMPILED_CELLS = tuple(
     Cell(SCENE_BY_NAME[name], engine, MILLISECOND, "beside")
     for name in ("free_four_bar", "pendulum_2")
@@ -215,14 +216,14 @@ COMPILED_CELLS = tuple(
     if engine.build_time >= SLOW_TO_BUILD
 )
 
-# The first variant of each engine alone, since variants hardly differ in the elements that they build.
+# There is one task for each engine, because variants of an engine build almost the same elements.
 MATRIX = tuple(
     map(
         Capabilities,
         tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1],
     )
 )
-# The variant "tuned" of each engine that declares compliant loops: its compliance is small.
+# The variant "tuned" of each engine that declares compliant loops. Its compliance is small.
 VELOCITY_TERMS = tuple(
     VelocityTerm(engine)
     for engine in (*registry.VARIANTS, *registry.OTHERS)
@@ -233,7 +234,7 @@ VELOCITY_TERMS = tuple(
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
-    """The rows of `scenes` in all engines, extras included, as rows of a sweep; naive methods are left out."""
+    """The rows of `scenes` of all engines, extras included, without naive methods; their purpose becomes "sweep"."""
     names = {*scenes}
     return [
         replace(row, purpose="sweep")
@@ -251,7 +252,7 @@ def comparable_error(row: Measurement | None, field: str = "angle") -> float:
 
 
 def word_and_reason(task: Capabilities, answer: Answer, line: str) -> tuple[str, str]:
-    """The word of a line and the reason of a refusal: by the capability table, or by a build that the table allows."""
+    """The word of a line and the reason of a refusal. The capability table decides, or else the stored answer."""
     capability = task.method.capability
     if capability and (refusal := capability.refusal(ELEMENT_EXAMPLES[line])):
         return _word_of(refusal), str(refusal)
@@ -268,7 +269,7 @@ def matrix(answers: Mapping[Capabilities, Answer]) -> str:
 
 
 def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
-    """(engine, line, word of the table, reason) of each element that is not built."""
+    """For each element that is not built: (engine, line, word of the table, reason)."""
     found = [
         (task, line, *word_and_reason(task, answer, line))
         for task, answer in answers.items()
@@ -278,7 +279,7 @@ def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, 
 
 
 def charted_methods(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
-    """(scene, method) of the variant as shipped and of the most accurate variant of each engine in each scene."""
+    """The pairs (scene, method) of each engine's default and of its most accurate method in this scene."""
     chosen: set[tuple[str, str]] = set()
     for scene, engine in dict.fromkeys((row.scene, row.engine) for row in rows):
         of_engine = [row for row in rows if (row.scene, row.engine) == (scene, engine)]

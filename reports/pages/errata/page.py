@@ -1,9 +1,8 @@
 """The page of errata: the wrong formulas of the chapter, and the derivatives and engines that prove them wrong.
 
-Each slip has a document slips/NUMBER.md with the printed formula, the right one, and a script that computes both.
+Each slip has a document slips/NUMBER.md with the printed and the right formula, and a script that evaluates both.
 
-Engines are evidence that does not use the chapter's formulas. Each engine runs a mechanism, and the accelerations are
-differences of its velocities.
+Engines give evidence that does not use the chapter's formulas. Accelerations are differences of their velocities.
 """
 
 from __future__ import annotations
@@ -58,12 +57,12 @@ class SampleWindow:
     twist: Array  # (POINTS, bodies, 3).
 
     def change(self, values: Array) -> Array:
-        """The time derivative [1/s] of values (POINTS, ...) at the middle sample."""
+        """The time derivative of values (POINTS, ...) at the middle sample."""
         return np.tensordot(FIRST_DERIVATIVE, values, axes=1) / WINDOW_SPACING
 
 
 HILL, SLEIGH = RollingOnCircle(), ChaplyginSleigh()
-CONFIRMED = 0  # number for equations (18.70) and (18.71), which are right as printed
+CONFIRMED = 0  # number of equations (18.70) and (18.71), which are right as printed
 
 
 def double_pendulum() -> Mechanism:
@@ -85,7 +84,7 @@ def _pendulum(window: SampleWindow) -> dict[int, Values]:
     velocity = window.twist[:, :, :2]
     ends = np.stack([2 * velocity[:, 0], 2 * (velocity[:, 1] - 2 * velocity[:, 0])], axis=1)
     measured, turning = window.change(ends), window.change(window.twist[:, :, 2])
-    # A bar's x axis points from its pin to its end; the chapter measures phi from another direction.
+    # The x axis of a bar points from its pin to its end; the chapter measures phi from another direction.
     angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]
     # The note states phi1'' itself, so the second derivative of the angle decides.
     twice = np.atleast_1d(SECOND_DERIVATIVE @ window.pose[:, 0, 2]) / WINDOW_SPACING**2
@@ -120,7 +119,8 @@ def _rolling(window: SampleWindow) -> dict[int, Values]:
 def _skate(window: SampleWindow) -> dict[int, Values]:
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
-    speed = np.sum(twist[:, :2] * along, axis=-1)  # of G and of C, since the line C G is parallel to the blade
+    # G and C have this speed, since the line C G is parallel to the blade
+    speed = np.sum(twist[:, :2] * along, axis=-1)
     push, turning = (float(window.change(values)) for values in (speed, twist[:, 2]))
     state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (SLEIGH.offset, 0.0))
     return {11: Values(*acceleration_of_g(*state), window.change(twist[:, :2]))}
@@ -137,14 +137,14 @@ def _four_bar(window: SampleWindow) -> dict[int, Values]:
 
 
 class DecidingMotion(NamedTuple):
-    """A mechanism, and the function that computes the values of each slip from its motion."""
+    """A mechanism, and the function that computes the values of slips from an engine's motion."""
 
     mechanism: Callable[[], Mechanism]
     read: Callable[[SampleWindow], dict[int, Values]]
 
 
 COMPANIONS: tuple[Scene, ...] = (HILL, SLEIGH, DrivenFourBar(), LinkPendulum())
-QUESTIONS: dict[str, DecidingMotion] = {  # by a description of the motion
+QUESTIONS: dict[str, DecidingMotion] = {  # description of the motion -> mechanism and values
     "a disc rolls off a round hill": DecidingMotion(HILL.mechanism, _rolling),
     "a sleigh on one skate coasts": DecidingMotion(SLEIGH.mechanism, _skate),
     "the crank of sample 18.15 turns at 10 rad/s": DecidingMotion(DrivenFourBar().mechanism, _four_bar),
@@ -154,7 +154,7 @@ QUESTIONS: dict[str, DecidingMotion] = {  # by a description of the motion
 
 @dataclass(frozen=True)
 class Refereed(MethodTask):
-    """The last POINTS samples of an engine's motion that decides a question."""
+    """A task with the last POINTS samples of the motion `question` in an engine."""
 
     question: str
     description: ClassVar[str] = "{0.question}"
@@ -170,7 +170,7 @@ TASKS = tuple(Refereed(engine, question) for question in QUESTIONS for engine in
 
 @dataclass(frozen=True)
 class Ruling:
-    """The values of one slip from one engine's motion (`about`) near 0.3 s; the engine computes `values.decides`."""
+    """The values of one slip from an engine's motion near 0.3 s. `about`: description of the motion."""
 
     number: int
     method: str
@@ -179,7 +179,8 @@ class Ruling:
 
 
 def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...], list[str]]:
-    """(rulings sorted by the slip's number, messages about failed runs); refusals of mechanisms are in neither."""
+    """The rulings, sorted by slip, and messages about failed runs. A mechanism that an engine refuses gives no
+    message."""
     decided: list[Ruling] = []
     failed: list[str] = []
     for task, answer in answers:
@@ -202,11 +203,11 @@ def rulings(answers: Iterable[tuple[Task, Answer]]) -> tuple[tuple[Ruling, ...],
 class Erratum:
     """One slip of the chapter.
 
-    printed, right: both formulas as text.
+    printed, right: the printed and the right formula as text.
     deciding: a description of the derivative that decides.
     dimensions: whether physical dimensions alone show the slip; the size of the error then depends on the units.
-    quoted, corrected: both formulas in LaTeX.
-    script: computes the values; empty for a slip of wording.
+    quoted, corrected: the printed and the right formula in LaTeX.
+    script: the script that computes the values, or "" for a slip of wording.
     """
 
     number: int
@@ -265,7 +266,7 @@ def missed(erratum: Erratum, pattern: str, between: str) -> str:
 
 
 def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
-    """Sentences on the errors of both formulas relative to the derivative and to the engines in `ruled`."""
+    """Sentences on the errors of the printed and the right formula, by the derivative and by engines (`ruled`)."""
     right = number(values.agreement)
     misses = f"The printed formula misses it by {number(values.miss)}, the right one by {right}."
     pattern = "the printed one misses their motion by {0} or more, the right one by {1} at most."
@@ -285,7 +286,7 @@ def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
 
 
 def slip_rows() -> list[tuple[str, ...]]:
-    """(number, place, printed formula, right formula, derivative, verdict) of each slip."""
+    """A row (number, place, printed formula, right formula, derivative, verdict) for each slip."""
     rows = []
     for slip in SLIPS_OF_CHAPTER:
         formulas, decided, verdict_text = (slip.printed, slip.right), "-", f"words: {slip.reason}"
@@ -303,7 +304,7 @@ def slip_rows() -> list[tuple[str, ...]]:
 
 
 def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
-    """(rows with the errors of both formulas by slip and engine, messages about failed runs)."""
+    """Rows with the errors of the printed and the right formula by slip and engine, and messages about failed runs."""
     units, answers = {slip.number: slip.unit for slip in ERRATA}, dict(run_items(TASKS))
     decided, failed = rulings((task, answers[task]) for task in TASKS)
     return [
@@ -314,7 +315,7 @@ def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The values of formulas, and decisions of engines from their stored motions."""
+    """Values of the formulas, and rulings from the engines' stored motions."""
     decided, failed = rulings(material.answers.items())
     slips = [
         {

@@ -1,7 +1,6 @@
-"""Faults of released engines, each described in a document with scripts that show it (page.md and upstream/NAME.md).
+"""The page on faults of released engines. A document upstream/NAME.md describes a fault, with scripts that show it.
 
-A full run executes the scripts of SCRIPTS with the installed release, so a finding disappears once its fault is
-repaired. A test runs every script and compares its output with its document.
+A full run executes the scripts of SCRIPTS with the installed release. A fault that was repaired is no longer reported.
 """
 
 from __future__ import annotations
@@ -45,7 +44,8 @@ def scripts() -> Mapping[str, str]:
 
 
 def printed_apart(name: str) -> str:
-    """The output of a script in a process of its own. Raises RuntimeError with the last line if the script fails."""
+    """The output of a script that runs in a separate process. Raises RuntimeError with the last line if the script
+    fails."""
     run = subprocess.run([sys.executable, "-c", scripts()[name]], capture_output=True, text=True)
     if run.returncode:
         raise RuntimeError((run.stderr or run.stdout).strip().splitlines()[-1])
@@ -70,11 +70,11 @@ class FaultScript(Task):
         return DEFAULT if self.name.startswith("mjx") else None
 
     def run(self) -> Values:
-        """`expected` and `found`, in the unit of the script, and `version` of the engine's package.
+        """`expected` and `found`, in the script's unit, and `version`, the version of the engine's package.
 
         Raises Unsupported if the engine is an extra that can't run here.
         """
-        if self.engine is not None:  # JAX keeps the settings of its first import, so the script has its own process
+        if self.engine is not None:  # JAX keeps the settings of its first import, so this needs another process
             DEFAULT.require()
             try:
                 match = RESULT.search(printed_apart(self.name))
@@ -86,7 +86,7 @@ class FaultScript(Task):
         import mujoco
 
         names = run_script(f"{self.name}.py", scripts()[self.name])
-        # pymunk.version is wrong in some releases (2.0.0 in 7.0.0). MuJoCo has two distributions.
+        # pymunk.version is wrong in some releases (2.0.0 in 7.0.0). MuJoCo has two distribution names.
         release = mujoco.__version__ if self.name.startswith("mujoco") else version("pymunk")
         return {**_values(names["expected"], names["found"]), "version": release}
 
@@ -96,7 +96,8 @@ def _values(expected: Any, found: Any) -> dict[str, np.ndarray]:
 
 
 def is_right(expected: float, found: float) -> bool:
-    """Whether both agree within 2e-4: MuJoCo's regularisation alone has an error of 1e-4 at its stiffest setting."""
+    """Whether two numbers agree within 2e-4. MuJoCo's regularisation causes an error of 1e-4 at its stiffest
+    setting."""
     return abs(found - expected) <= 2e-4 * max(1.0, abs(expected))
 
 
@@ -144,7 +145,7 @@ def measured_across(offset: float) -> float:
 
 
 def predicted_across(offset: Any) -> Any:
-    """The velocity of `measured_across` by cpGrooveJoint's wrong formula for the impulse.
+    """The result of `measured_across` that follows from cpGrooveJoint's wrong formula for the impulse.
 
     The formula is n (n.K^-1 v) instead of n (n.v) / (n.K n). Here n = (0, 1) is the normal, v = (1, 0) is the relative
     velocity of the anchors, and K = J M^-1 J^T = [[1 + q, -q], [-q, 1 + q]] with q = offset^2 / 2 belongs to a pin at

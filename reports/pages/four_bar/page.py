@@ -34,7 +34,8 @@ SAMPLES_PER_REVOLUTION = 50
 
 @dataclass(frozen=True)
 class PrintedRates(Task):
-    """Equations (18.70) and (18.71) integrated by RK45. The absolute tolerance is a thousandth of `tolerance`."""
+    """RK45 integrates equations (18.70) and (18.71). `tolerance` is relative; the absolute one is a thousandth of
+    it."""
 
     revolutions: int
     tolerance: float
@@ -42,7 +43,7 @@ class PrintedRates(Task):
     words: ClassVar[str] = "printed rates over {0.revolutions} revolutions at {0.tolerance:g}"
 
     def run(self) -> Values:
-        """`error`: the largest error of beta [rad]. `stopped`: why the integration ended early, or ""."""
+        """`error`: the largest error of beta [rad]. `stopped`: the reason of an early end, or ""."""
         scene = DrivenFourBar()
         t = np.linspace(0, self.revolutions * scene.duration, SAMPLES_PER_REVOLUTION * self.revolutions + 1)
         beta, _ = scene.four_bar.angles(scene.start + scene.rate * t)
@@ -93,7 +94,7 @@ RECOMMENDED = "free_four_bar"
 
 # Fig. 18.66 has nine poses at the ends of eight equal intervals; the last pose equals the first.
 INTERVALS = 8
-SAMPLES_PER_INTERVAL = 8  # which gives the engines a step of about 1e-2 s
+SAMPLES_PER_INTERVAL = 8  # the engines' step is then about 1e-2 s
 DRAWN_OVER_TRUTH = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
 # The readme's animation shows MOVING_METHODS and the exact motion, with steps of 1 ms.
@@ -128,7 +129,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def assemblies() -> str:
-    """A Markdown table of both assemblies of the loop at the first crank angle, with the gap at C."""
+    """A Markdown table of the two assemblies at the first crank angle, with the gap at C."""
     scene = DrivenFourBar()
     bars, theta = scene.four_bar, scene.start
     b = bars.crank * np.exp(1j * theta)
@@ -143,11 +144,11 @@ def assemblies() -> str:
 def context(material: Material) -> Mapping[str, Any]:
     """Numbers for the text: the compliance of MuJoCo's loops, and the fraction of a gap that pymunk closes."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
-    wanted = ("3.6.0", "free_four_bar", "tuned")  # the last release without the loops' velocity term
+    wanted = ("3.6.0", "free_four_bar", "tuned")  # 3.6.0 is the last release that omits the velocity term of loops
     errors = [entry.error for entry in released().entries if (entry.version, entry.scene, entry.variant) == wanted]
     return {
         "assemblies": assemblies(),
-        "soft_share": [1 / d - 1 for d in soft[:2]],  # without a gap, and with a gap of 1 mm or more
+        "soft_share": [1 / d - 1 for d in soft[:2]],  # values without a gap and with a gap of 1 mm or more
         "stiff_share": 1 / hard[0] - 1,
         "before_term": errors[0] if errors else UNMEASURED,  # rad
         "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
@@ -155,7 +156,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Whether a method is run in a scene. Methods that change single settings are run in one scene only."""
+    """Whether a method is run in a scene. Methods with one changed setting are run in one scene only."""
     return engine in VARIANTS or engine not in ENGINES or scene.name == RECOMMENDED
 
 
