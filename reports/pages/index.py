@@ -1,4 +1,4 @@
-"""The index of the pages, with findings, symptoms and comparisons of engines; and the generated part of the readme."""
+"""The index of the pages with findings, symptoms and comparisons of engines, and the generated part of the readme."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ from reports.write.templates import environment, inert_page, link, with_part
 
 @dataclass(frozen=True)
 class Symptom:
-    """A symptom that a user sees, a short answer, and the page that explains it, below `heading` if there is one."""
+    """A symptom that a user sees, a short answer, and the page with the explanation. `heading`: heading on this page,
+    or ""."""
 
     seen: str
     answer: str
@@ -61,7 +62,7 @@ COMPARED_COLUMNS = (Column.SHIPPED, Column.SETTINGS, Column.CODE)
 
 
 def compared_lines(pages: Mapping[Page, Material]) -> list[EngineLine]:
-    """A line for each of COMPARED_SCENES and each engine, extras included, that has rows of this scene on any page."""
+    """A line for each scene in COMPARED_SCENES and each engine with rows of this scene, extras included."""
     lines: list[EngineLine] = []
     for name in COMPARED_SCENES:
         for page, scene in [(teaching, scene) for teaching in pages for scene in teaching.scenes if scene.name == name]:
@@ -107,7 +108,7 @@ def compared_picture(lines: Sequence[EngineLine]) -> str:
 
 
 def compared_table(lines: Sequence[EngineLine]) -> str:
-    """A Markdown table of the error within CPU_BUDGET and, in brackets, at COMPARED_STEP, by scene and engine."""
+    """A Markdown table of errors by scene and engine: within CPU_BUDGET and, in brackets, at COMPARED_STEP."""
     body = []
     for line in lines:
         has_one_column = Column.WHOLE in line.columns
@@ -121,7 +122,7 @@ def compared_table(lines: Sequence[EngineLine]) -> str:
 
 def _compared_cell(line: EngineLine, column: Column) -> str:
     if column not in line.columns and (Column.WHOLE in line.columns or column is Column.CODE):
-        return DASH  # no variant of this kind
+        return DASH  # the engine has no variant of this kind
     if reason := engine_tables.absence_reason(line, column):
         return f"*{reason}*"
     engine, rows = line.columns[column][-1]
@@ -132,7 +133,7 @@ def _compared_cell(line: EngineLine, column: Column) -> str:
 
 
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The text of the index; it links only to pages that are among `pages` or `files`."""
+    """The text of the index. It has links only to pages in `pages` and to `files`."""
     entries = [
         (page, judged([*material.sweep(page.scenes), *material.usual(page.scenes)], page.quantity))
         for page, material in pages.items()
@@ -167,7 +168,7 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with its generated part: the lines of the page `your_loop` and their errors, without timings.
+    """The readme with its generated part, which has the lines of the page `your_loop` and their errors.
 
     Raises ValueError if the readme lacks the marks around this part.
     """

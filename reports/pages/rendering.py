@@ -1,4 +1,4 @@
-"""The texts of all pages, pictures and tables by file name, from stored rows and answers. No file is written here."""
+"""Renders the texts of all pages, pictures and tables by file name, from stored rows and answers."""
 
 from __future__ import annotations
 
@@ -120,14 +120,14 @@ def render_all(
     engines: dict[str, Engine] = {}
     for page, material in pages.items():
         files.update(rendered[page.name] if page.name in rendered else render_page(page, material, command))
-        # A cell may belong to an experiment of one page and to the sweep of another: errors.csv has the sweep's row.
+        # If a cell belongs to an experiment and to a sweep, errors.csv has the row of the sweep.
         rows.update({row.key: row for row in material.rows.values() if row.purpose == "sweep" or row.key not in rows})
         engines.update({row.key: cell.engine for cell, row in material.rows.items()})
     files |= pictures(findings(pages))
     if drawing := compared_picture(compared_lines(pages)):
         files[COMPARED_PICTURE] = drawing
     files["index.md"] = render_index(pages, command, files)
-    # A stored row is used only with the versions that it was made with, so the installed versions are its versions.
+    # A stored row is used only if the same versions are installed, so these are the row's versions.
     by_engine = {engine: row_versions(engine) for engine in dict.fromkeys(engines.values())}
     made_with = {key: by_engine[engine] for key, engine in engines.items()}
     files["errors.csv"] = as_csv(rows.values(), timings=False, made_with=made_with)

@@ -89,8 +89,8 @@ HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 class Capabilities(BuildingTask):
     """The elements that an engine builds.
 
-    Each line of ELEMENT_EXAMPLES has a word from YES to TOO_OLD, and `reason_key(line)` has the reason of a refusal.
-    `reactions` and `width` are determined by a run.
+    The value of a line of ELEMENT_EXAMPLES is its word in the table; that of `reason_key(line)` is the reason of a
+    refusal. A run determines `reactions` and `width`.
     """
 
     description: ClassVar[str] = "what it builds"

@@ -21,7 +21,7 @@ LOOP_METHODS: tuple[Engine, ...] = tuple(dict.fromkeys([*mujoco.METHODS, *pymunk
 
 
 def table(material: Material) -> str:
-    """A Markdown table of the errors, order, plateau and cost of each method with a row at 1 ms; empty without rows."""
+    """A Markdown table with the errors, the order, the plateau and the cost of each method that has a row at 1 ms."""
     look_up = lookups(material, (SETTINGS_LOOP,))
     body = []
     for engine in LOOP_METHODS:

@@ -1,4 +1,4 @@
-"""The page of the N-four-bar, which has one degree of freedom, but N + 1 at its two singular positions."""
+"""The page of the N-four-bar. It has one degree of freedom, and N + 1 at its two singular positions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from reports.write.unmeasured import UNMEASURED
 
 SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")
 SOFT_LOOPS = cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
-ONCE = NFourBar(duration=1.2, horizon=1.2)  # passes only the first singular position
+ONCE = NFourBar(duration=1.2, horizon=1.2)  # this motion passes only the first singular position
 
 
 def forces_without_a_limit(material: Material) -> list[Observation]:
@@ -55,8 +55,8 @@ def context(material: Material) -> Mapping[str, Any]:
     """Numbers for the text.
 
     exact: period and singular instants [s] by scene.
-    failed: a function that states whether all motions of a method are wrong.
-    soft: number and range of the errors of SOFT_LOOPS; UNMEASURED unless all motions of SOFT_LOOPS are wrong.
+    failed: function of (scene, engine, variant) -> phrase that states whether all motions are wrong.
+    soft: number and range of the errors of SOFT_LOOPS, or UNMEASURED if not all these motions are wrong.
     """
     look_up = lookups(material, LINKAGES_IN_A_ROW)
 

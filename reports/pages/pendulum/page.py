@@ -74,7 +74,7 @@ def tip(ratio: float) -> LinkPendulum:
     return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
 
 
-# Extrapolated variants are run at the largest step only, since they fail at smaller steps too.
+# Extrapolated variants are run at the largest step only, since they already fail there.
 PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
     PointPendulum(), (pymunk.EXTENDED, mujoco.EXTENDED), (10,)
 )
@@ -95,7 +95,8 @@ def beyond_the_horizon(material: Material) -> dict[str, Any]:
 
 
 def opened_joints(material: Material) -> dict[str, Any]:
-    """`opened`: the largest gap in pymunk, in lengths of a link. `fastest`: the chain's highest frequency [rad/s]."""
+    """`opened`: the largest gap in pymunk relative to the length of a link. `fastest`: the chain's highest frequency
+    [rad/s]."""
     rows = material.of(cell for cell in LARGE_STEPS if cell.engine in (pymunk.DEFAULT, pymunk.TUNED))
     opened = np.max([row.gap for row in rows]) / HundredLinks().length if rows else UNMEASURED
     return {"opened": opened, "fastest": stiffest_hanging(HundredLinks())}
@@ -103,7 +104,7 @@ def opened_joints(material: Material) -> dict[str, Any]:
 
 PERIOD = PointPendulum().pendulum.period  # s
 
-# MuJoCo with free bodies, so that each joint is an equality constraint.
+# MuJoCo with free bodies, where each joint is an equality constraint.
 FREE_COORDINATE_METHODS = (
     replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free"),
     PENDULUM_SPARSE_NEWTON,
@@ -124,7 +125,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def answers() -> str:
-    """A Markdown table of the answers to problems 18.5.1 and 18.5.2, and their differences to derivatives."""
+    """A Markdown table of the answers to problems 18.5.1 and 18.5.2, with their differences from derivatives."""
     length, angles, rates, turning = errata.BAR, errata.PHI, errata.PHI_RATE, errata.PHI_ACCELERATION
     first = errata.velocities(length, angles, rates)
     second = errata.accelerations(length, angles, rates, turning)
@@ -157,7 +158,7 @@ PAGE = scene_page(
         Failure("Two thousand seconds of a point pendulum", cells=PHASE, columns=("angle", "rate", "gap", "energy")),
         Failure(
             "A light chain with a heavy tip",
-            # pymunk extended is run at the largest step only, because it takes minutes at the smallest one.
+            # "pymunk extended" is run at the largest step only, because it takes minutes at the smallest step.
             cells=cells(tip(1e4), [engine for engine in HEAVY_TIP_METHODS if engine != pymunk.EXTENDED], (1, 10, 100))
             + cells(tip(1e4), (pymunk.EXTENDED,), (1,)),
         ),

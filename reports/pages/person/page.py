@@ -43,7 +43,7 @@ PERSONS = (SwayingOnOneFoot(), OneFoot(), TwoFeet())
 
 
 def ends(person: OneFoot) -> dict[str, Points]:
-    """Body -> its end without a joint, in the body's frame [m]: the shoulder, and the ankle of the lifted foot."""
+    """Body -> its free end in the body's frame [m], which is the shoulder or the ankle of the lifted foot."""
     ahead = person.lengths - person._behind
     return {"trunk": ((float(ahead[2]), 0.0),), "right shank": ((float(ahead[4]), 0.0),)}
 
@@ -59,13 +59,13 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """`freedoms`: degrees of freedom by scene. `knee`: the time in which the knee's mode grows by the factor e [s]."""
+    """`freedoms`: degrees of freedom by scene. `knee`: time constant of the knee's growing mode [s]."""
     freedoms = {scene.name: scene.mechanism().degrees_of_freedom()[0] for scene in PERSONS}
     knee = float(modes_upright(SwayingOnOneFoot())[0][-1]) ** -0.5
     return {"freedoms": freedoms, "knee": knee}
 
 
-# The order that is observed in these scenes: after extrapolation an error of fifth order remains.
+# The extrapolated method has the order 5 in these scenes.
 OBSERVED_ORDERS = {
     (scene, "pymunk extended"): ConvergenceOrder(5, reaction=4, differences=8, amplified=17.0)
     for scene in ("person_swaying", "person_one_foot", "person_two_feet")

@@ -1,11 +1,11 @@
 """Two published benchmarks: the energy of Gymnasium's Acrobot, and the bounds in tests of the engine Newton.
 
-Acrobot: issue 1714 of github.com/Farama-Foundation/Gymnasium has three numbers for the drift of the energy. The data
+Acrobot: issue 1714 of github.com/Farama-Foundation/Gymnasium publishes the drift of the energy at three steps. The data
 of the links are from `gymnasium/envs/classic_control/acrobot.py`. The issue does not state the initial state, which
-changes the drift by a factor of hundreds. Here both links are initially in line and at rest, and their angle is chosen
-so that RK4 has the first of the three drifts.
+changes the drift by a factor of hundreds. Here both links are initially in line and at rest. Their angle is chosen so
+that RK4 has the published drift at the largest step.
 
-Newton: problems and bounds are copied from tests 2, 3 and 10 of `newton/tests/test_physics_validation.py` in
+Newton: the problems and bounds are copied from the tests 2, 3 and 10 in `newton/tests/test_physics_validation.py` of
 github.com/newton-physics/newton.
 """
 
@@ -30,11 +30,11 @@ Array = NDArray[np.float64]
 ACROBOT_GRAVITY, HORIZON = 9.8, 100.0  # m/s^2, s.
 ACROBOT_STEPS = (0.2, 0.05, 0.01)  # s; Gymnasium's step is 0.2 s.
 PUBLISHED = (3.554e-3, 4.189e-6, 1.519e-8)  # Relative drift of the energy at ACROBOT_STEPS.
-ACROBOT_START = 0.30488863  # rad; with this angle the drift of RK4 at ACROBOT_STEPS[0] is PUBLISHED[0].
+ACROBOT_START = 0.30488863  # rad; with this angle, RK4 has the drift PUBLISHED[0] at ACROBOT_STEPS[0].
 
 
 def acrobot(angle: float = ACROBOT_START) -> Mechanism:
-    """Two links of 1 m, 1 kg and 1 kg m^2, in line and at rest, at an angle [rad] from the hanging pose."""
+    """Two links of 1 m, 1 kg and 1 kg m^2 in line and at rest; `angle` [rad] is 0 in the hanging pose."""
     along = np.array([math.sin(angle), -math.cos(angle)])
     bodies = tuple(
         Body(name, 1.0, 1.0, (*(distance * along).tolist(), angle), (0.0, 0.0, 0.0))
@@ -48,7 +48,7 @@ def acrobot(angle: float = ACROBOT_START) -> Mechanism:
 
 
 def _rates(state: Array) -> Array:
-    """The time derivative of (first angle, second angle relative to the first, both rates)."""
+    """The time derivative of a state (first angle, relative second angle, both rates)."""
     first, second, rate, relative = state
     coupling = 0.5 * math.cos(second)
     inertia = np.array([[3.5 + 2 * coupling, 1.25 + coupling], [1.25 + coupling, 1.25]])
@@ -98,7 +98,7 @@ def rk4_drift(angle: float, step: float, rounded: bool = False) -> float:
 
 @dataclass(frozen=True)
 class DirectRK4(Task):
-    """The drift of Acrobot's energy by RK4 in the two angles."""
+    """A task with the drift of Acrobot's energy by RK4 in the two angles."""
 
     seconds: ClassVar[float] = 1.0
     words: ClassVar[str] = "Acrobot's energy: RK4"
@@ -114,7 +114,7 @@ class DirectRK4(Task):
 
 @dataclass(frozen=True)
 class Acrobot(MethodTask):
-    """The drift of Acrobot's energy in an engine."""
+    """A task with the drift of Acrobot's energy in an engine."""
 
     description: ClassVar[str] = "Acrobot's energy"
 
@@ -132,29 +132,29 @@ class Acrobot(MethodTask):
 
 
 NEWTON_GRAVITY = 10.0  # m/s^2.
-ROD_LENGTH, BALL_RADIUS = 1.0, 0.01  # m; the rod has no mass.
+ROD_LENGTH, BALL_RADIUS = 1.0, 0.01  # m; the rod is massless.
 SMALL_SWING, LARGE_SWING = 0.05, 1.0  # rad; initial angles.
-PERIODS = 3.5  # Of the small swing.
+PERIODS = 3.5  # Duration of the small swing in periods.
 LARGE_SWING_DURATION = 2.0  # s.
-NEWTON_STEPS = (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)  # s; Newton's tests have 1e-3 s, and 2e-4 s for the four-bar.
+NEWTON_STEPS = (1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4)  # s; Newton's tests use 1e-3 s, and 2e-4 s for the four-bar.
 SAMPLE_INTERVAL = 1e-2  # s.
-# Error of the rocker's angle [degrees], gap [m], mean error of the small swing relative to its amplitude, relative
-# drift of the energy.
+# "angle": error of the rocker [degrees]. "gap": largest gap [m]. "period": mean error of the small swing relative to
+# its amplitude. "energy": relative drift of the energy.
 NEWTON_BOUNDS = {"angle": 0.1, "gap": 1e-3, "period": 1e-2, "energy": 5e-3}
-# A crank-rocker of bars with equal cross-sections; the crank makes one turn per second, and there is no gravity.
+# A crank-rocker of bars with equal cross-sections, without gravity. The crank makes one turn per second.
 CRANK_ROCKER = {"crank": 0.2, "coupler": 0.5, "rocker": 0.4, "ground": (0.5, 0.0), "density": 1.6}
 NEWTON_FOUR_BAR = DrivenFourBar(**CRANK_ROCKER, start=0.0, rate=2 * math.pi, gravity=(0.0, 0.0), revolutions=2.0)
 
 
 def pendulum(angle: float) -> Mechanism:
-    """A ball on a rod, at rest at this angle [rad] from the hanging pose."""
+    """A ball on a rod at rest; `angle` [rad] is 0 in the hanging pose."""
     pose = (ROD_LENGTH * math.sin(angle), -ROD_LENGTH * math.cos(angle), angle)
     ball = Body("ball", 1.0, 0.4 * BALL_RADIUS**2, pose, (0.0, 0.0, 0.0))
     return Mechanism((ball,), (Pin("pivot", None, "ball", (0.0, 0.0), (0.0, ROD_LENGTH)),), (0.0, -NEWTON_GRAVITY))
 
 
 def freudenstein(crank: Array) -> Array:
-    """The rocker's angles [rad] at angles of the crank [rad] by Freudenstein's equation."""
+    """The angles of the rocker [rad] by Freudenstein's equation, from angles of the crank [rad]."""
     a, b, c, d = NEWTON_FOUR_BAR.crank, NEWTON_FOUR_BAR.coupler, NEWTON_FOUR_BAR.rocker, NEWTON_FOUR_BAR.ground[0]
     x, y = d / a - np.cos(crank), -np.sin(crank)
     right = d / c * np.cos(crank) - (a * a - b * b + c * c + d * d) / (2 * a * c)
@@ -163,7 +163,7 @@ def freudenstein(crank: Array) -> Array:
 
 @dataclass(frozen=True)
 class Newton(MethodTask):
-    """The measures of Newton's tests for an engine."""
+    """A task with the measured quantities of Newton's tests for an engine."""
 
     description: ClassVar[str] = "Newton's bounds"
 
@@ -173,7 +173,7 @@ class Newton(MethodTask):
         return sum(total / step * self.method.step_cost(NEWTON_FOUR_BAR.mechanism()) for step in NEWTON_STEPS)
 
     def run(self) -> Values:
-        """A measure (steps,) for each name in NEWTON_BOUNDS; infinite for a run that diverged."""
+        """The values (steps,) of each quantity in NEWTON_BOUNDS; infinite for a run that diverged."""
         measured = [self._measures(step) for step in NEWTON_STEPS]
         return {name: np.array([values[name] for values in measured]) for name in NEWTON_BOUNDS}
 

@@ -50,16 +50,17 @@ START_MULTIPLIERS = (98.5668703962410896057654982170, -6.12268834425566265503114
 
 
 def relative(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The test set's coordinates (..., 7), or their derivatives, from the bodies' angles or their derivatives."""
+    """The test set's coordinates (..., 7) from the angles of the bodies (..., 7). Derivatives are converted
+    likewise."""
     k1, k2, k3, k4, k5, k6, k7 = np.moveaxis(angles, -1, 0)
     return np.stack([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7], axis=-1)
 
 
 def compared(scene: Andrews) -> list[dict[str, Any]]:
-    """Computed and published numbers: angles at END_TIME, and nonzero accelerations and multipliers at t = 0.
+    """Computed and published numbers: angles at END_TIME, and accelerations and multipliers at t = 0 that are not zero.
 
-    A multiplier of the test set is minus our reaction. The test set has M q'' = f - G^T lambda, our mechanism has
-    M a = f + J^T reaction, and both define the row of the joint P with the same sign.
+    A multiplier of the test set is minus our reaction. The test set has the equation M q'' = f - G^T lambda, and our
+    mechanism M a = f + J^T reaction. The rows of the joint P have the same sign in both equations.
     """
     motion, mechanism = scene.motion([0.0, END_TIME]), scene.mechanism()
     free = mechanism.unconstrained(motion.pose[0], motion.twist[0])
@@ -85,8 +86,8 @@ def compared(scene: Andrews) -> list[dict[str, Any]]:
 
 
 ANDREWS = Andrews()
-# The low and the high precision in A01_specification.xml and A02_specification.xml of the IFToMM library. There they
-# bound relative errors of a point's coordinates; here they bound the largest angle error of the whole problem [rad].
+# Low and high precision from A01_specification.xml and A02_specification.xml of the IFToMM library. The library bounds
+# relative errors of a point's coordinates; here the numbers bound the largest angle error [rad].
 IFTOMM_PRECISIONS = (1e-1, 1e-3)
 IFTOMM_CELLS = (*PHASE, *sweep_cells((NFourBar(),), VARIANTS, FULL))
 DIRECT_RK4 = DirectRK4()
@@ -95,7 +96,7 @@ NEWTONS = tuple(Newton(engine) for engine in VARIANTS)
 
 
 def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
-    """The least CPU time of the whole problem [ms] for each of IFTOMM_PRECISIONS."""
+    """The least CPU time [ms] of a whole motion for each precision in IFTOMM_PRECISIONS."""
     of_method = rows.of(scene.name, method_name(engine), "")
     if not of_method:
         return ["not run"] * len(IFTOMM_PRECISIONS)
@@ -105,7 +106,7 @@ def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
 
 
 def largest_step(answer: Answer, name: str) -> float | None:
-    """The largest of NEWTON_STEPS [s] such that it and all smaller steps meet a bound; None if no step does."""
+    """The largest step [s] in NEWTON_STEPS that meets a bound together with all smaller steps; None if no step does."""
     largest = None
     for step, measure in sorted(zip(NEWTON_STEPS, answer.array(name), strict=True)):
         if not measure < NEWTON_BOUNDS[name]:
@@ -115,7 +116,7 @@ def largest_step(answer: Answer, name: str) -> float | None:
 
 
 def bounds(material: Material) -> list[dict[str, Any]]:
-    """The `largest_step` for each of NEWTON_BOUNDS, by method."""
+    """The largest steps that meet the bounds, by method."""
     return [
         {"method": method_name(task.method), "steps": {name: largest_step(answer, name) for name in NEWTON_BOUNDS}}
         for task in NEWTONS
@@ -124,7 +125,7 @@ def bounds(material: Material) -> list[dict[str, Any]]:
 
 
 def drifts(material: Material) -> list[dict[str, Any]]:
-    """The drift of Acrobot's energy at ACROBOT_STEPS: by RK4, by RK4 with states in 32 bits, and in each engine."""
+    """The drifts of Acrobot's energy at ACROBOT_STEPS by RK4, by RK4 with states in 32 bits, and by each engine."""
     named = [("RK4 in the two angles", DIRECT_RK4, "drift"), ("the same states in 32 bits", DIRECT_RK4, "rounded")]
     named += [(method_name(engine), Acrobot(engine), "drift") for engine in VARIANTS]
     return [

@@ -69,7 +69,8 @@ def roulettes() -> tuple[Roulette, ...]:
 
 
 def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
-    """Points (n, 2) [m] of a boundary between two arcs, or of the whole boundary; a Side is then a whole square."""
+    """Points (n, 2) [m] of a boundary between two arcs. Without arcs the boundary is whole, and that of a Side is a
+    square."""
     if isinstance(curve, Side) and arcs is None:
         half = curve.side / 2
         return half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]], dtype=float)
@@ -78,7 +79,7 @@ def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
 
 
 def placed(points: Array, pose: Array) -> Array:
-    """Points (n, 2) [m] of a body at a pose (3,), in the frame of the ground."""
+    """Points (n, 2) [m] of a body with the pose (3,), in the frame of the ground."""
     return rotated(np.asarray(pose[2]), points) + pose[:2]
 
 
@@ -102,7 +103,8 @@ def draw_roulettes(chosen: Sequence[Roulette], columns: int = 2) -> Figure:
 
 
 def draw_contact() -> Figure:
-    """An ellipse on a hill, on flat ground and in a hole, with C, e_t, e_n and the circle of curvature."""
+    """An ellipse on a hill, on flat ground and in a hole, with the contact C, its unit vectors and the circle of
+    curvature."""
     body = Ellipse(0.5, 0.3)
     hill, hole = Placed(Circle(0.8), turn=math.pi / 2), Placed(Ring(1.1), turn=-math.pi / 2)
     grounds: tuple[tuple[str, Curve], ...] = (("on a hill", hill), ("on flat ground", Line()), ("in a hole", hole))
@@ -125,7 +127,7 @@ def draw_contact() -> Figure:
                 tip = point + 0.45 * vector
                 arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8}
                 panel.annotate("", tip, point, arrowprops=arrow, zorder=5)
-                # The label of e_t is above the arrow, but in a hole below the arrow, since the ground rises.
+                # The label of e_t is above the arrow, except in the hole, where the ground rises.
                 above = (0.09 if a >= 0 else -0.09) * normal if vector is tangent else 0.0
                 panel.annotate(name, point + 0.53 * vector + above, color=colour, ha="center", va="center", fontsize=11)
             panel.plot(*point, "o", color=LIGHT.ink, markersize=4, zorder=6)
@@ -179,7 +181,7 @@ FRICTION_COEFFICIENTS = (0.2, 0.5, 1.0)
 
 
 def draw_acceleration() -> Figure:
-    """The acceleration's rolling term and the term of a body pinned at C, for an ellipse that turns and for discs."""
+    """Two terms of the acceleration, that of rolling and that of a body pinned at C, for an ellipse and for discs."""
     with drawing(3.6) as figure:
         left_panel, right = figure.subplots(1, 2)
         rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Line())
@@ -199,7 +201,7 @@ def draw_acceleration() -> Figure:
             "acceleration at 1 rad/s [m/s$^2$]",
         )
         left_panel.set_xticks([0, 45, 90, 135, 180])
-        fit = np.geomspace(1e-3, 30, 200)  # (kappa_A + kappa_B) / kappa_B of a disc
+        fit = np.geomspace(1e-3, 30, 200)  # ratio (kappa_A + kappa_B) / kappa_B of a disc
         right.plot(fit, 1 / fit, color=LIGHT.first, linewidth=2)
         right.axhline(1.0, color=LIGHT.second, linewidth=2)
         note(right, "as if pinned at C", (1.3e-2, 1.0), (0, -12), LIGHT.second)
@@ -216,7 +218,7 @@ def draw_acceleration() -> Figure:
 
 
 def draw_friction(scenes: Sequence[RollingScene]) -> Figure:
-    """|T|/N over time, and the instants at which a contact with FRICTION_COEFFICIENTS slips or hops."""
+    """The ratio |T|/N of contact forces over time, and the instants at which contacts slip or hop."""
     with drawing(3.6) as figure:
         for index, (panel, scene) in enumerate(zip(figure.subplots(1, len(scenes), sharey=True), scenes, strict=True)):
             law, end = scene.motion_law, scene.hop or scene.duration

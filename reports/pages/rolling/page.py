@@ -52,7 +52,7 @@ CHATTERING = hill_cells((*PUBLIC, *STIFF_CONTACTS))
 
 
 def position_errors(cell: Cell, run: Trajectory) -> tuple[float, float]:
-    """(largest position error [m] while the motion is comparable, position error [m] at the end)."""
+    """The largest position error [m] while the motion can be compared, and the position error [m] at the end."""
     truth = cell.scene.motion(run.t)
     error = np.linalg.norm((run.pose - truth.pose)[:, 0, :2], axis=-1)
     comparable = run.t <= cell.scene.comparable_until * (1 + 1e-12)
@@ -71,7 +71,7 @@ def beyond_friction(material: Material) -> list[Observation]:
 
 
 def after_friction(material: Material) -> dict[str, Any]:
-    """`least`: the smallest ratio of a contact's error at the end to its largest comparable error.
+    """`least`: the smallest ratio, over runs with a contact, of the error at the end to the largest comparable error.
 
     `slips`, `hops`: the instants at which a real contact slips and hops [s].
     """
@@ -83,7 +83,7 @@ def after_friction(material: Material) -> dict[str, Any]:
 
 
 def absent_contact(cell: Cell, run: Trajectory) -> float:
-    """The share of samples before the slip at which the normal force is missing. The sample at t = 0 is left out."""
+    """The share of samples without a normal force, before the contact slips. The sample at t = 0 is left out."""
     rolling = (run.t <= cell.scene.comparable_until) & (run.t > 0)
     mechanism = cell.scene.mechanism()
     weight = mechanism.bodies[0].mass * float(np.hypot(*mechanism.gravity))
@@ -125,17 +125,17 @@ ROLLING_SCENES = (
     RollingOnCircle(),
     EllipticGears(),
 )
-# Exact multipliers with Euler steps are left out, because they cost as much as those with Runge-Kutta steps.
+# The exact solver with Euler steps is left out, because it costs as much as with Runge-Kutta steps.
 COMPARED_ENGINES = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
 ROLL_CONSTRUCTIONS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, *mujoco_methods.ROLLS)
 
-HILL_SCENE = RollingOnCircle()  # one object, because it caches its last comparable instant
+HILL_SCENE = RollingOnCircle()  # this object is shared, because it caches its last comparable instant
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
     """Whether a method is run in a scene.
 
-    ROLL_CONSTRUCTIONS are run on the ellipse only. Exact multipliers are slow in two scenes, and only tests run these.
+    ROLL_CONSTRUCTIONS are run on the ellipse only. The exact solver is left out in two scenes, where it is slow.
     """
     if engine in ROLL_CONSTRUCTIONS:
         return scene.name == RollingEllipse.name
@@ -154,7 +154,7 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """`at(scene, method, step)` is the row of a method, such as "mujoco tuned", nearest to a step [s]."""
+    """`at(scene, method, step)`: the method's row with the step nearest to `step` [s]."""
     rows = Rows(material.sweep(ROLLING_SCENES))
 
     def at(scene: str, method: str, step: float) -> Any:

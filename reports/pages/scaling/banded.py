@@ -1,4 +1,4 @@
-"""The reference's banded solver for joint forces of a chain, with RK4, as an engine for LongPendulums only."""
+"""An engine for LongPendulums: RK4 with the reference's banded solver for the joint forces of a chain."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class BandedChain(Engine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """4, of RK4. Pins are exact, because angles are the coordinates."""
+        """The order of RK4, 4. Pins are exact, because angles are the coordinates."""
         return ConvergenceOrder(4, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """An estimate [s]; up to three links, calls of numpy take most of the time."""
+        """An estimate [s]. Calls of numpy take most of the time up to three links."""
         return 50e-6 * max(1.0, len(mechanism.bodies) / 3)
 
     @validated

@@ -51,7 +51,7 @@ FIT_POINTS = 3  # the fit uses the largest sizes, at which constant costs are sm
 
 @dataclass(frozen=True)
 class SizePoint:
-    """A method at one number of links (`size`).
+    """The result of a method for a chain of `size` links.
 
     step: CPU time of a step [s].
     error: the largest angle error [rad]; NaN if the run was made for its CPU time only.
@@ -65,7 +65,7 @@ class SizePoint:
 
 @dataclass(frozen=True)
 class MethodSeries:
-    """A method at all sizes; the smallest is first."""
+    """The results of a method; the smallest chain is first."""
 
     engine: str
     variant: str
@@ -80,7 +80,7 @@ class MethodSeries:
 
 
 def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSeries, ...]:
-    """The rows by method. Cells that last less than `timed` [s] have a cost but no error."""
+    """The results by method. Cells that last less than `timed` [s] have a cost but no error."""
     points_by_method: dict[tuple[str, str], list[SizePoint]] = {}
     for cell, row in rows.items():
         comparable, is_full = Outcome(row.outcome).comparable, cell.scene.duration >= timed * (1 - 1e-9)
@@ -95,7 +95,7 @@ def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSer
 
 
 def exponent(sizes: Iterable[float], values: Iterable[float], last: int = FIT_POINTS) -> tuple[float, int, int]:
-    """(slope of log value over log size for the `last` finite points, smallest and largest size of the fit).
+    """The slope of log value over log size for the `last` finite points, and the smallest and largest size of the fit.
 
     With fewer than two points the result is (NaN, 0, 0).
     """
@@ -111,7 +111,7 @@ FURTHER_MARKS = ("X", "v")
 
 
 def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
-    """A panel with the CPU time of a step [µs], and one with the largest angle error [rad] of whole runs."""
+    """A panel with the CPU time of a step [µs], and a panel with the largest angle error [rad] of full runs."""
     variants: dict[str, list[str]] = {}
     for series in all_series:
         variants.setdefault(series.engine, []).append(series.variant)
@@ -148,14 +148,14 @@ def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
 
 
 def _look(series: MethodSeries, variants: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """The usual `look`, but a fourth and a fifth method of an engine have marks of their own."""
+    """The usual `look`; the fourth and the fifth method of an engine have other marks."""
     index = variants[series.engine].index(series.variant)
     other_mark = {"marker": FURTHER_MARKS[index - 3], "fillstyle": "full"} if index in (3, 4) else {}
     return look(series.engine, series.variant, variants) | other_mark
 
 
 def fitted(series: MethodSeries) -> str:
-    """The exponent of the cost with the smallest and the largest size of the fit, such as '1.0 (50 to 1000)'."""
+    """The exponent of the cost and the range of sizes of the fit, such as '1.0 (50 to 1000)'."""
     least, most = SIZES_OF_FIT.get(series.method, (0, math.inf))
     points = [point for point in series.points if least <= point.size <= most]
     slope, first, last = exponent([p.size for p in points], [p.step for p in points])
@@ -168,10 +168,10 @@ LARGE_SIZES = (50, 100)
 COSTLY_SIZES = (300, 1000)  # run for a few steps only, to measure their CPU time
 PENDULUM_SAMPLES = 5
 FEW_STEPS = 4
-MORE_STEPS = 40  # of cheap methods at COSTLY_SIZES, because their first step is slower than the next ones
+MORE_STEPS = 40  # for cheap methods at COSTLY_SIZES, because their first step is slower than later steps
 
 FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
-# Error estimates are off, because their runs would count as CPU time of a step.
+# Error estimates are switched off, because their runs would increase the CPU time of a step.
 PLAIN = replace(mujoco.EXTENDED, coordinates="free", estimates=False)
 SCALING_SPARSE_NEWTON = replace(
     PLAIN,
@@ -188,17 +188,18 @@ SCALING_METHODS: tuple[Engine, ...] = (
     *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED),
     *(FREE_DEFAULT, SCALING_SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA, BandedChain()),
 )
-# Methods that take seconds for a step of more than 300 links.
+# Methods that take seconds for a step of a chain with more than 300 links.
 AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
 CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING_SPARSE_NEWTON, BandedChain())
 
-# In a chain of N equal links, an iteration multiplies the slowest mode by 1 - pi^2/(4 N^2). The iterations of a step
-# multiply it by RESIDUAL, so their number is SWEEPS_OVER_SQUARE N^2. From N = CAPPED on, it is ITERATION_LIMIT.
+# In a chain of N equal links, an iteration multiplies the slowest mode by 1 - pi^2/(4 N^2). A step needs
+# SWEEPS_OVER_SQUARE N^2 iterations to reduce this mode by the factor RESIDUAL. From CAPPED links on, a step has
+# ITERATION_LIMIT iterations.
 SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
 CAPPED = ceil(sqrt(ITERATION_LIMIT / SWEEPS_OVER_SQUARE))
 
 # (smallest, largest) size of a fit. Below CAPPED links, the number of iterations of pymunk tuned grows with the size.
-# At COSTLY_SIZES, both methods make few steps, and the first of them have more iterations.
+# At COSTLY_SIZES these methods make few steps, and early steps have more iterations.
 SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
     "pymunk tuned": (CAPPED, max(LARGE_SIZES)),
     "pymunk extended": (0, max(LARGE_SIZES)),
@@ -206,7 +207,7 @@ SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
 
 
 def cells() -> tuple[Cell, ...]:
-    """Each method at each size. A quick run has only the cells with the purpose "growth"."""
+    """The cells of each method at each size. A quick run has only those with the purpose "growth"."""
     chosen = []
     for engine in SCALING_METHODS:
         for links in (*SMALL_SIZES, *LARGE_SIZES, *COSTLY_SIZES):

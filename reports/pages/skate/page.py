@@ -1,4 +1,4 @@
-"""The page of the skate: its constructions, compared on the sleigh, and its theory."""
+"""The page of the skate: comparison of constructions on the sleigh, and theory."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ PARKED: Triple = (0.0, 1.0, 0.0)
 
 
 def parking() -> Figure:
-    """Manoeuvres by which a skate moves sideways, and the displacement of a commutator against its size."""
+    """Manoeuvres that move a skate sideways, and a commutator's displacement against the size of its moves."""
     start: Triple = (0.0, 0.0, 0.0)
     panels = [
         _manoeuvre("turn, slide, turn", start, theory.park(start, PARKED)),
@@ -63,7 +63,7 @@ def _manoeuvre(title: str, start: Triple, moves: tuple[theory.Move, ...]) -> Pan
 
 
 def slope() -> Figure:
-    """An ideal skate that turns on a slope: it moves across the slope on cycloids."""
+    """An ideal skate that turns on a slope and moves across it on cycloids."""
     panels, label = [], "path of C; the slope descends downwards"
     for title, scene in (
         ("turning at 1 rad/s from rest, blade across the slope", SkateOnSlope(turning_rate=1.0)),
@@ -87,13 +87,14 @@ DRAWN_PATHS: dict[str, tuple[str, Any]] = {
     "mujoco default": ("second", "--"),
     "mujoco tuned": ("second", ":"),
 }
-# Methods in the table besides the usual variants. "pymunk naive" sets the centre's velocity across the blade to zero.
+# Methods in the table in addition to the usual variants. "pymunk naive" sets the centre's velocity across the blade to
+# zero.
 LISTED = ("pymunk naive", "pymunk skate: groove, extrapolated", "pymunk skate: point's velocity zeroed")
 LISTED += ("mujoco friction blade",)
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Whether a method is run in a scene: constructions of a skate are run on the sleigh ahead only."""
+    """Whether a method is run in a scene. Constructions of a skate are run only on the sleigh that moves ahead."""
     return scene == SLEIGH_AHEAD or engine not in SKATE_CONSTRUCTIONS
 
 
@@ -151,7 +152,7 @@ CONSTRUCTION_HEADER = (
 def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | None = None) -> str:
     """A Markdown table of errors and cost at COMPARED_STEP, and of convergence; the best construction is first.
 
-    Constructions without a run near that step are left out. The text is empty if none is left.
+    Constructions without a run near that step are left out.
     """
     verdicts = by_method(sweeps(rows), "position")
     lines = []
@@ -188,12 +189,12 @@ def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> 
 
 
 def uniform_conditions() -> str:
-    """A Markdown table of conditions w = (a, b, c) on one body, the equivalent skates, and the products w · curl w."""
+    """A Markdown table of velocity conditions w = (a, b, c) on a body, with the equivalent skates and w · curl w."""
     body = []
     for row in ((0.0, 1.0, 0.5), (1.0, 0.0, 0.0), (3.0, 4.0, -2.0), (0.0, 0.0, 1.0)):
         skate, curl = theory.skate_of(row), theory.frobenius(row, np.array([0.3, -0.2, 0.8]))
         equivalent = "none"
-        if skate is not None:  # + 0.0 turns -0 into 0
+        if skate is not None:  # adding 0.0 changes -0 into 0
             numbers = (*skate.second_point, math.degrees(skate.angle))
             equivalent = "({:.3g}, {:.3g}) m, {:.3g}°".format(*(number + 0.0 for number in numbers))
         body.append([f"({', '.join(f'{factor:g}' for factor in row)})", equivalent, f"{curl + 0:.6g}"])
@@ -201,9 +202,9 @@ def uniform_conditions() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Tables, and functions that look up rows of the sleigh and return UNMEASURED if there is no row.
+    """Tables, and functions that return a row of the sleigh or UNMEASURED.
 
-    at: a method's row nearest to a step [s].
+    at: a method's row with the step nearest to a step [s].
     least: the row of an engine's variant with the least position error.
     finest: a method's row at the smallest step with a position error.
     """
@@ -225,8 +226,8 @@ def context(material: Material) -> Mapping[str, Any]:
     }
 
 
-# The naive method does not converge to the ideal motion. The order of an ideal row is declared nevertheless, so that
-# the gate measures how far the method misses it.
+# The order of an ideal row is declared for the naive method, although it does not converge to the ideal motion. So the
+# gate compares its error with the bound.
 DECLARED_ORDERS = {("sleigh_backwards", "pymunk default"): ConvergenceOrder(1, differences=1)}
 
 PAGE = scene_page(

@@ -1,4 +1,4 @@
-"""The page of the slider-crank, and of constructions of its slot."""
+"""The page of the slider-crank and of constructions of its slot."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LEAVING_SAMPLES = 3001
 
 @dataclass(frozen=True)
 class Leaving(Task):
-    """The time at which the crank has left its dead centre; its initial distance is `angle` [rad]."""
+    """A task with the time at which a crank has left its dead centre, from the initial distance `angle` [rad]."""
 
     angle: float
 
@@ -43,7 +43,7 @@ class Leaving(Task):
     words: ClassVar[str] = "leaving a dead centre from {0.angle:g} rad"
 
     def run(self) -> Values:
-        """`when`: the first sample at which the crank's angle is larger than LEFT_BY [s]."""
+        """`when`: the first sampled time [s] at which the crank's angle is larger than LEFT_BY."""
         scene = SliderAtDeadCentre(angle=self.angle)
         t = [scene.duration * i / (LEAVING_SAMPLES - 1) for i in range(LEAVING_SAMPLES)]
         has_left = scene.motion(t).pose[:, 0, 2] > LEFT_BY
@@ -65,14 +65,15 @@ LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 
 def delay(material: Material) -> dict[str, Any]:
-    """`later`: the difference of the times [s] of the last two of LEAVING. `nearer`: log 100."""
+    """`later`: the difference [s] between the times of the last two tasks of LEAVING. `nearer`: logarithm of the ratio
+    of their initial distances."""
     far, near = (material.finished(task) for task in LEAVING[-2:])
     later = near.number("when") - far.number("when") if far and near else UNMEASURED
     return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}
 
 
 def leaving(material: Material) -> list[Observation]:
-    """The times at which the crank of the reference motion has left its dead centre, by initial distance."""
+    """The times at which the crank has left its dead centre in the reference motion, by initial distance."""
     settings = [(task, f"{number(task.angle)} rad aside") for task in LEAVING]
     describe = "a radian away after {:.3f} s".format
     return read_answers(material, "the reference", settings, lambda answer: describe(answer.number("when")))

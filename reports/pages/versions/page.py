@@ -22,14 +22,15 @@ from reports.write.tables import markdown
 
 
 def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
-    """The variants in the order of tables: the three usual variants first, the others by name."""
+    """The variants in the order of tables: the usual variants come first, then other variants by name."""
     present = {entry.variant for entry in entries}
     usual = [variant for variant in ("default", "tuned", "extended") if variant in present]
     return (*usual, *sorted(present - {*usual}))
 
 
 def heat_map(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
-    """A panel for each method, with a cell for each scene and version: the power of ten of the error, or a letter."""
+    """A panel for each method, with a cell for each scene and version; it shows the power of ten of the error, or a
+    letter."""
     methods = variants(entries)
     scenes = {method: tuple(dict.fromkeys(e.scene for e in entries if e.variant == method)) for method in methods}
     heights = [len(scenes[method]) for method in methods]
@@ -57,7 +58,7 @@ def heat_map(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
 
 
 def _look(entry: Entry) -> tuple[str, str]:
-    """(colour, text) of a cell. A failure is not hatched, because its letter would be hard to read."""
+    """The colour and the text of a cell. A failure is not hatched, because its letter would be hard to read."""
     if not entry.comparable:
         outcome = Outcome(entry.outcome)
         return outcome_colour(outcome), outcome.letter
@@ -67,7 +68,7 @@ def _look(entry: Entry) -> tuple[str, str]:
 
 def _draw_cell(panel: Axes, column: int, row: int, entry: Entry) -> None:
     colour, letters = _look(entry)
-    # With `add_patch`, matplotlib would compute the limits again for each of some thousand cells.
+    # With `add_patch`, matplotlib would update the limits for each of a thousand cells.
     panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=LIGHT.paper, linewidth=1))
     panel.text(column + 0.5, row + 0.5, letters, ha="center", va="center", color=LIGHT.ink, fontsize=7, in_layout=False)
 
@@ -83,7 +84,8 @@ def _legend(figure: Figure, entries: Sequence[Entry]) -> None:
 
 
 def version_table(table: ReleaseTable, engine: str) -> str:
-    """A Markdown table of the versions: known changes, numbers of errors that fell or rose, and relative costs."""
+    """A Markdown table of versions, with known changes, the numbers of smaller and larger errors, and relative
+    costs."""
     entries, versions = table.of(engine), table.versions(engine)
     costs = {method: relative_cost(entries, versions, method) for method in variants(entries)}
     costs = {method: ratios for method, ratios in costs.items() if ratios}

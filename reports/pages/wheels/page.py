@@ -30,7 +30,8 @@ from reports.write.unmeasured import UNMEASURED
 
 @dataclass(frozen=True)
 class Folding(Task):
-    """The reference motion of a car that reverses with a trailer, coasting or driven for `driven` [s]."""
+    """A task with the reference motion of a reversing car with a trailer, which coasts or is driven for `driven`
+    [s]."""
 
     scene: CarAndTrailer
     driven: float
@@ -39,7 +40,8 @@ class Folding(Task):
     words: ClassVar[str] = "the reference on a reversing trailer"
 
     def run(self) -> Values:
-        """`jackknifed`: when the trailer of the driven car is bent by a right angle [s]. `t`, `pose`: coasting."""
+        """`jackknifed`: time [s] at which the driven car's trailer is bent by a right angle. `t`, `pose`: motion of the
+        coasting car."""
         scene = self.scene
         car = CarWithTrailers(scene.wheelbase, (scene.length,), (scene.hitch,))
         convoy = car.drive(scene.speed, scene.steering, scene.pose, (scene.bend,), [self.driven])
@@ -56,7 +58,7 @@ FOLDED = math.pi / 2  # rad
 
 
 def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
-    """The time at which |values| first exceeds a limit, interpolated linearly; None if it never does."""
+    """The linearly interpolated time at which |values| first exceeds a limit; None if it never does."""
     over = np.flatnonzero(np.abs(values) > limit)
     if not over.size or over[0] == 0:
         return None
@@ -72,7 +74,7 @@ RUNS = tuple(Cell(BACKING, engine, every) for engine in ENGINES_ALONE for every 
 
 
 def folding(material: Material) -> list[Observation]:
-    """The time at which the trailer is bent by a right angle: by closed form, by kinematics, and in the engines."""
+    """The time at which the trailer is bent by a right angle, from a closed form, from kinematics, and in engines."""
     bent = float(Tow(BACKING.length, BACKING.bend).relative_angle(-FOLDS * abs(BACKING.speed)))
     observations = [Observation("closed form, at a constant speed", "", f"{FOLDS:.4f} s")]
     reference = material.finished(REFERENCE)
@@ -87,7 +89,7 @@ def folding(material: Material) -> list[Observation]:
 
 
 def lateness(material: Material) -> dict[str, Any]:
-    """`late`: the delays of folding in the naive method [s], at the larger and at the smaller step."""
+    """`late`: the delays [s] of the folding in the naive method at two steps; the larger step is first."""
     truth = material.finished(REFERENCE)
     exact = crossing(truth.array("t"), bend_of(truth.array("pose")), FOLDED) if truth else None
     motions = material.motions(cell for cell in RUNS if cell.engine == pymunk.DEFAULT)
@@ -112,12 +114,13 @@ CAR, CART = CarAndTrailer(redundant=True), Cart(redundant=True)
 
 
 DRAWBAR = 1.0  # m.
-RADII = (1.6, 1.0, 0.6)  # m, of the hitch's circles.
+RADII = (1.6, 1.0, 0.6)  # m; radii of the hitch's circles.
 DRAWBARS = 7
 
 
 def tows() -> Figure:
-    """A wheel towed along a straight line and round circles whose radii are larger than, equal to and below DRAWBAR."""
+    """A wheel that is towed along a straight line and round circles with radii larger than, equal to and below
+    DRAWBAR."""
     panels = [_tow("straight: the tractrix", math.inf, 4 * DRAWBAR)]
     for radius, sign in zip(RADII, (">", "=", "<"), strict=True):
         panels.append(_tow(f"R {sign} L", radius, 2.5 * 2 * math.pi * radius))
@@ -137,9 +140,10 @@ def _tow(title: str, radius: float, distance: float) -> Panel:
 
 
 def casters() -> Figure:
-    """The casters of a cart trail when the cart goes ahead, and swing round when the cart is pushed back."""
+    """The casters of a cart trail behind when it moves ahead, and swing round when it is pushed back."""
     cart = Casters(((0.7, 0.2), (0.7, -0.2)), 0.1)
-    corners = np.array([[0.0, 0.2], *cart.places, [0.0, -0.2], [0.0, 0.2]])  # from the fixed axle to the kingpins
+    # distance from the fixed axle to the kingpins
+    corners = np.array([[0.0, 0.2], *cart.places, [0.0, -0.2], [0.0, 0.2]])
     t = np.linspace(0, 2, 801)
     panels = []
     for title, speed, start in (

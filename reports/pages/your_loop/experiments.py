@@ -24,7 +24,7 @@ from reports.pages.your_loop.linkages import LINKAGES
 
 PAGE_STEP = 1e-3  # s
 MILLISECONDS_PER_SAMPLE = 10
-# The seed is the hash of the last commit before this code was written, so it was not chosen for its results.
+# The seed is the hash of the commit before this code was written, so it is not chosen by the results.
 COMMIT = "007b1fa1"
 COUNT = 60  # mechanisms of each kind
 LEAST_SAMPLES = 20
@@ -34,9 +34,9 @@ UNCHANGED_FIELDS = ("links", "duration", "horizon", "branch", "friction", "densi
 
 
 def draw(scene: Scene, number: int) -> Mechanism:
-    """Random mechanism `number` of the scene's kind: lengths, masses and rates are scaled, and angles are drawn.
+    """Random mechanism `number` like that of the scene, with scaled lengths, masses and rates, and random angles.
 
-    The draw is repeated until the mechanism's motion is known for more than LEAST_SAMPLES samples.
+    The draw is repeated until the reference motion has more than LEAST_SAMPLES samples.
     """
     digest = hashlib.sha256(f"{COMMIT} {scene.name} {number}".encode()).hexdigest()
     random = np.random.default_rng(int(digest, 16))
@@ -57,7 +57,7 @@ def draw(scene: Scene, number: int) -> Mechanism:
                         value * 2 ** float(random.uniform(-SCALE_EXPONENT, SCALE_EXPONENT)) for value in values
                     )
                 case _:
-                    continue  # counts, names and choices
+                    continue  # counts, names and choices are unchanged
         try:
             changed_scene: Any = replace(cast(Any, scene), **changed)
             mechanism = changed_scene.mechanism()
@@ -67,14 +67,14 @@ def draw(scene: Scene, number: int) -> Mechanism:
             continue
 
 
-@lru_cache(maxsize=COUNT)  # each engine is compared with the same motions
+@lru_cache(maxsize=COUNT)  # all engines are compared with the same motions
 def _ideal(mechanism: Mechanism, samples: int, duration: float) -> IdealMotion:
     return reference_motion(mechanism, samples, duration / samples)
 
 
 @dataclass(frozen=True)
 class Fresh(MethodTask):
-    """The errors of one method in COUNT random mechanisms of a scene's kind, relative to the exact solver."""
+    """A task with the errors of one method in COUNT random mechanisms like that of a scene, by the exact solver."""
 
     scene: Scene
     quantity: str = "angle"
@@ -96,7 +96,7 @@ class Fresh(MethodTask):
         return float(early.max()) if np.isfinite(early).all() else inf
 
 
-GAP_DURATION = 10.0  # s, longer than the trial run of `choose`.
+GAP_DURATION = 10.0  # s; this is longer than the trial run of `choose`.
 ANGLE_DURATION = 3.0  # s.
 LINKAGE_STEP = 1 / 240  # s.
 
@@ -110,7 +110,7 @@ def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class BeforeAndAfter(Task):
-    """The errors of one linkage, first as shipped and then with the lines of the page."""
+    """A task with the errors of one linkage without and with the lines of the page."""
 
     linkage: str
     lines: str
@@ -119,7 +119,7 @@ class BeforeAndAfter(Task):
     words: ClassVar[str] = "with the lines: {0.linkage}"
 
     def run(self) -> Values:
-        """`gap` (2,) [px] and `angle` (2,) [rad]: the largest errors as shipped and with the lines.
+        """`gap` (2,) [px] and `angle` (2,) [rad]: the largest errors without and with the lines.
 
         Angles are NaN if shapes touch or if the space is not an ideal mechanism. `iterations` is 0 if the lines do not
         change the space.
@@ -146,7 +146,8 @@ class BeforeAndAfter(Task):
         }
 
     def _angle_errors(self, angles: np.ndarray) -> list[float]:
-        """The largest errors (2,) of angles (2, times, bodies) [rad] until the horizon or the first obstacle."""
+        """The largest errors (2,) of two sets of angles (2, times, bodies) [rad] until the horizon or the first
+        obstacle."""
         space = LINKAGES[self.linkage]()
         try:
             reading = read(space, LINKAGE_STEP)

@@ -1,7 +1,8 @@
-"""Planar linkages as users of pymunk build them: lengths are in pixels, and y points upwards.
+"""Planar linkages as users of pymunk build them. Lengths are in pixels, and y points upwards.
 
-`linkages.json` has a list of elements for each linkage; the bodies come first. `["bars", density, group, corners]` is
-one body of thin bars between the corners; three or more corners are a closed polygon. `["pin", a, b, point]` is a pivot
+`linkages.json` has a list of elements for each linkage; the bodies come first. `["bars", density, group, corners]` is a
+body of thin bars between corners, which form a closed polygon if there are more than two corners. `["pin", a, b,
+point]` is a pivot
 between two bodies. Bodies are numbered from 0, and -1 is the ground. Points of bars, balls, boxes and pins are in the
 frame of the space. Points of grooves, springs and rods are in the frames of the bodies.
 """
@@ -21,7 +22,7 @@ from pymunk import constraints as joints
 
 PLANS: Mapping[str, list[list[Any]]] = json.loads(Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 PIXEL_GRAVITY = (0, -900)  # px/s^2.
-# The first word of an element -> its class. The other words are the arguments of the class.
+# First word of an element -> its class. Further words are the arguments of the class.
 PYMUNK_JOINTS: Mapping[str, Callable[..., joints.Constraint]] = {
     "pin": joints.PivotJoint,
     "motor": joints.SimpleMotor,
@@ -34,7 +35,7 @@ PYMUNK_JOINTS: Mapping[str, Callable[..., joints.Constraint]] = {
 
 
 def bars(density: float, corners: list[list[float]]) -> tuple[pymunk.Body, list[pymunk.Shape]]:
-    """A body of thin bars between the corners [px], with this mass per pixel; and its shapes."""
+    """A body of thin bars between the corners [px], and its shapes. `density` is the mass per pixel."""
     points = [pymunk.Vec2d(*corner) for corner in corners]
     sides = list(itertools.pairwise(points)) + ([(points[-1], points[0])] if len(points) > 2 else [])
     masses = [density * (q - p).length for p, q in sides]
@@ -50,7 +51,7 @@ def bars(density: float, corners: list[list[float]]) -> tuple[pymunk.Body, list[
 
 
 def body_of(kind: str, mass: float, *arguments: Any) -> tuple[pymunk.Body, list[pymunk.Shape]]:
-    """The body of an element and its shapes; for bars, `mass` is the mass per pixel."""
+    """The body of an element, and its shapes. For bars, `mass` is the mass per pixel."""
     match kind, arguments:
         case "bars", (_, corners):
             return bars(mass, corners)
@@ -60,7 +61,7 @@ def body_of(kind: str, mass: float, *arguments: Any) -> tuple[pymunk.Body, list[
         case "box", (_, at, sides):
             body = pymunk.Body(mass, pymunk.moment_for_box(mass, sides))
             shapes = [pymunk.Poly.create_box(body, sides)]
-        case _:  # a slider, which can't rotate and has no shape
+        case _:  # this is a slider, which can't rotate and has no shape
             (at,) = arguments
             body, shapes = pymunk.Body(mass, inf), []
     body.position = tuple(at)

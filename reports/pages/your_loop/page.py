@@ -1,4 +1,4 @@
-"""The page with lines to paste into a model of MuJoCo or pymunk, and the errors without and with these lines."""
+"""The page with lines to paste into a model of MuJoCo or pymunk, and with errors without and with these lines."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ LOOP, SLIDER, CHAIN, DISC, SKATE = map(
 
 @dataclass(frozen=True)
 class PastedCase:
-    """A kind of mechanism in one engine.
+    """A mechanism in an engine, without and with the lines of the page.
 
-    before: the engine as shipped; None if it lacks the joint.
+    before: the engine with default settings; None if it lacks the joint.
     after: the engine with the lines of the page.
     """
 
@@ -73,7 +73,7 @@ PYMUNK_CASES = (
 
 
 def cell(case: PastedCase, engine: Engine) -> Cell:
-    """The cell of a case at 1 ms, with the purpose "beside" if no other page runs the method in this scene."""
+    """The cell of a case at 1 ms. Its purpose is "beside" if no other page runs the method in this scene."""
     beside = engine == pymunk.LEAPFROG and case.scene != LOOP
     return Cell(case.scene, engine, MILLISECONDS_PER_SAMPLE, "beside" if beside else "sweep")
 
@@ -86,7 +86,8 @@ BUILT = tuple(BeforeAndAfter(name, PYMUNK_LINES.replace("(space, 1e-3)", "(space
 
 
 def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
-    """A Markdown table of the cases: errors in random mechanisms, and errors and CPU times of the example."""
+    """A Markdown table with a line for each case: errors in random mechanisms, and the example's errors and CPU
+    times."""
     body = []
     for case in cases:
         rows = [material.rows.get(cell(case, engine)) for engine in case.engines]
@@ -103,7 +104,7 @@ def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
 
 
 def spread(material: Material, task: Fresh) -> list[float]:
-    """[median, least, largest] error of the random mechanisms; UNMEASURED if they were not run."""
+    """The median, the least and the largest error of the random mechanisms; UNMEASURED if the task was not run."""
     answer = material.finished(task)
     if answer is None:
         return [UNMEASURED] * 3
@@ -136,8 +137,8 @@ def code_before_step(engine: str) -> str:
 def context(material: Material) -> Mapping[str, Any]:
     """The lines and tables.
 
-    reactions: relative errors of the joint forces in the closed linkage, by engine.
-    fresh: `spread` of the closed linkage as shipped and with the lines, by engine.
+    reactions: engine -> relative error of the joint forces in the closed linkage.
+    fresh: engine -> errors in random closed linkages without and with the lines, each from `spread`.
     """
     earlier = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
     first = {"mujoco": MUJOCO_CASES[0], "pymunk": PYMUNK_CASES[0]}

@@ -24,11 +24,11 @@ MODEL_FILES = Path(__file__).parent / "models"
 
 @dataclass(frozen=True)
 class ModelCheck(Task):
-    """The check of a model in MODEL_FILES. The model's text is a field, so that it is part of the task's key."""
+    """A task with the check of a model in MODEL_FILES. Its key depends on the model's text, which is a field."""
 
     file: str
     text: str
-    argument: str  # Of the command line.
+    argument: str  # Argument of the command line.
     duration: float  # s.
     tolerance: float
     step: float | None = None
@@ -50,7 +50,7 @@ class ModelCheck(Task):
         for setting in (document, *document["tried"]):
             setting.pop("cpu")
             setting.pop("front", None)
-        # The cheapest sufficient setting would depend on the machine; the largest sufficient step does not.
+        # The largest sufficient step is chosen, because the cheapest sufficient setting depends on the machine.
         coarsest = coarsest_enough(checked)
         document["advised"] = coarsest and {
             "words": coarsest.change.words,
@@ -93,7 +93,8 @@ def rows() -> list[dict[str, str]]:
 
 
 def other_models() -> dict[str, object]:
-    """Numbers of models that were tried, that are read unchanged, and that are read without options; and a table."""
+    """How many models were tried, are readable unchanged, and are readable with elements switched off; and a table of
+    them."""
     tried = rows()
     readable = [row for row in tried if row["bodies"]]
     body = [[MODEL_SOURCES[row["source"]], f"`{row['model']}`", _sentence(row)] for row in tried]
@@ -124,7 +125,7 @@ def _sentence(row: dict[str, str]) -> str:
 
 
 def result_of(material: Material, task: ModelCheck) -> dict[str, Any] | None:
-    """The results of a check and their table; None if it did not finish."""
+    """The results of a check with their table; None if the check did not finish."""
     if (answer := material.finished(task)) is None:
         return None
     document = json.loads(str(answer.values["found"]))
