@@ -1,4 +1,4 @@
-"""Colours, lines and marks of engines and outcomes. A family's look follows from its place in the registry."""
+"""Colours, lines and marks of engines and outcomes. The order of the registry determines the look of a family."""
 
 from __future__ import annotations
 
@@ -18,19 +18,20 @@ USUAL_VARIANTS = ("default", "tuned", "extended")
 
 
 def family_of(engine: str) -> str:
-    """The family of an engine's name; the name itself if no such engine is registered."""
+    """The family of the engine with this name; the name itself if the engine is not registered."""
     return next((entry.family for entry in (*registry.ENGINES, *registry.OTHERS) if entry.name == engine), engine)
 
 
 def _palette_index(family: str, engines: Iterable[str]) -> int:
-    """The index of a family in the palette: registered families come first, then those of `engines` by name."""
+    """The index of a family in the palette. Registered families come first, then other families of `engines` by
+    name."""
     registered = [engine.family for engine in (*registry.ENGINES, *registry.OTHERS)]
     others = sorted({family_of(family), *map(family_of, engines)} - {*registered})
     return [*dict.fromkeys(registered), *others].index(family)
 
 
 def role(family: str, engines: Iterable[str] = ()) -> str:
-    """The role of a family's colour in a theme; `engines` are the names of all engines in the picture."""
+    """The role of a family's colour in the theme. `engines`: names of all engines in the picture."""
     return SERIES[_palette_index(family, engines) % len(SERIES)]
 
 
@@ -43,7 +44,7 @@ def colour(engine: str, engines: Iterable[str] = ()) -> str:
 
 
 def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """The keyword arguments of a method's line in a chart; `shown` has the variants in the chart by engine.
+    """The keyword arguments of a method's line in a chart. `shown`: engine -> variants in the chart.
 
     The family determines colour and mark, and the variant determines dashes and filling, so that lines differ without
     colours too. The three usual variants of a family look the same in every chart.
@@ -52,7 +53,8 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[
     methods = [(name, of_name) for name, variants in shown.items() if family_of(name) == family for of_name in variants]
     usual = [(methods[0][0], usual_variant) for usual_variant in USUAL_VARIANTS]
     first = len(USUAL_VARIANTS) if any(method in usual for method in methods) else 0
-    # In a family without usual variants, the registered methods come first, so that their looks are always the same.
+    # In a family without usual variants the registered methods come first, so that their look does not depend on the
+    # chart.
     everywhere = [] if first else [(entry.name, entry.variant) for entry in registry.VARIANTS if entry.family == family]
     others = [other for other in dict.fromkeys([*everywhere, *methods]) if other not in usual]
     method = (engine, variant)
@@ -71,7 +73,7 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[
     }
 
 
-# (upper bound of the error, role of its colour); on light paper the colours become darker.
+# (upper bound of the error, role of its colour). On light paper larger errors have darker colours.
 SHADES = ((1e-9, "exact"), (1e-6, "fine"), (1e-4, "good"), (1e-2, "fair"), (math.inf, "middling"))
 SHADE_NAMES = {
     "exact": "error below 1e-9",

@@ -1,4 +1,4 @@
-"""Pictures of mechanisms: a line connects the joint points of a body, and a circle is a joint.
+"""Pictures of mechanisms. A line connects the joint points of a body, and a circle marks a joint.
 
 `configurations` has a panel for each pose, with methods drawn over the reference motion. `stroboscope` draws several
 poses of a motion into one panel.
@@ -24,7 +24,7 @@ from reports.plots.theme import LIGHT, bare, drawing
 
 Array = NDArray[np.float64]
 
-# Largest error of a point that is not visible, as a fraction of the picture: the width of a line.
+# Largest invisible error of a point as a fraction of the picture. It is the width of a line.
 VISIBLE = 5e-3
 JOINT_DOTS: dict[str, Any] = {"marker": "o", "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
 INK: dict[str, Any] = {"color": LIGHT.ink, "linewidth": 2.2, "markersize": 4.5, "zorder": 2, **JOINT_DOTS}
@@ -49,10 +49,10 @@ def configurations(
     others: Mapping[str, tuple[Array, str, Any]] | None = None,
     columns: int = 3,
 ) -> Figure:
-    """A panel for each of the reference poses `truth` (panels, bodies, 3).
+    """A panel for each reference pose in `truth` (panels, bodies, 3).
 
-    `others` maps a method to (poses (panels, bodies, 3), role of the colour, dashes). A method is drawn where its error
-    is visible. The legend marks methods that are drawn nowhere.
+    `others` maps a method to (poses (panels, bodies, 3), role of the colour, dashes). A method is drawn in panels where
+    its error is visible. The legend marks methods without a visible error.
     """
     others = others or {}
     looks = {
@@ -101,15 +101,15 @@ Points = tuple[tuple[float, float], ...]
 
 LEAST_OPACITY = 0.12
 LINE_BREAK = np.full((1, 2), np.nan)
-BLOCK_SIZE = 0.045  # side of a body with one joint point, drawn as a rectangle, as a fraction of the picture
+BLOCK_SIZE = 0.045  # side of the square that shows a body with one joint point, as a fraction of the picture
 
 
 @dataclass(frozen=True)
 class Strip:
-    """One panel: `count` poses of a scene's reference motion from `start` to `end` [s].
+    """One panel: A panel with `count` poses of a scene's reference motion from `start` to `end` [s].
 
     ends: points of bodies without a joint, such as a free end, in the body's frame [m].
-    spread: shift between successive poses to the right [m].
+    spread: shift to the right between successive poses [m].
     trace: a body and one of its points, whose path is drawn.
     floor: whether a line at y = 0 is drawn.
     """
@@ -134,7 +134,7 @@ class Strip:
 
 
 def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> dict[str, Array]:
-    """Body -> its joint points and `ends` (points, 2) [m] in the ground's frame, sorted along the body's x axis."""
+    """Body -> its joint points and free ends (points, 2) [m] in the ground's frame, sorted along the body's x axis."""
     out = {}
     for name, points in body_points(mechanism, pose).items():
         x, y, angle = pose[mechanism.body_index(name)]
@@ -145,7 +145,7 @@ def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> di
 
 
 def path(scene: Scene, body: str, point: tuple[float, float], t: Array) -> Array:
-    """The path (times, 2) [m] of `point`, which is given in the body's frame [m]."""
+    """The path (times, 2) [m] of a point; `point` has its coordinates in the body's frame [m]."""
     pose = scene.motion(t).pose[:, scene.mechanism().body_index(body)]
     return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 PANEL_MARGIN = 0.07
 MIN_HEIGHT, MAX_HEIGHT = 1.4, 5.0  # inches.
-MIN_ASPECT = 0.7  # Of width to height, so that the labels of ticks do not overlap.
+MIN_ASPECT = 0.7  # Smallest ratio of width to height; in a narrower panel the labels of ticks overlap.
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class Path:
     """A line through points (points, 2). Paths with the same label share an entry of the legend.
 
     colour: a role of the theme.
-    framed: whether the limits of the axes include the path; a wrong motion may leave the panel.
-    dot: whether the end has a dot.
+    framed: whether the limits of the axes include the path.
+    dot: whether the end of the path has a dot.
     """
 
     points: ArrayLike

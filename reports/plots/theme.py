@@ -21,7 +21,7 @@ FIGURE_WIDTH = 9.2  # inches; GitHub does not scale pictures of this width
 
 @dataclass(frozen=True)
 class Theme:
-    """The colours of roles; the defaults are for a light background.
+    """A colour for each role. The defaults are for a light background.
 
     Roles must have different colours, because a stylesheet finds a role in an SVG by its colour.
     """
@@ -92,7 +92,7 @@ RC_SETTINGS = {
 
 # Verdana replaces DejaVu Sans on systems without it, and has letters of the same widths.
 FONTS = "'DejaVu Sans', Verdana, sans-serif"
-# Names that matplotlib derives from coordinates, whose last bits may differ between runs.
+# Names that matplotlib derives from coordinates. The last bits of coordinates may differ between runs.
 DIGESTED = re.compile(r"\b([mpCh][0-9a-f]{10})\b")
 
 

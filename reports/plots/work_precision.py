@@ -22,7 +22,7 @@ from reports.plots.looks import colour, family_of, look, mark
 from reports.plots.theme import LIGHT, PowersOfTen, drawing, new_figure, note, settings, style_axes
 
 PANEL_COLUMNS = 2
-LONGEST_OF_FOUR = 30  # letters; four longer names do not fit into a line of the legend
+LONGEST_OF_FOUR = 30  # letters; a line of the legend is too short for four longer names
 SLOPES = (1, 2, 4)
 FAN_POSITIONS = 25
 
@@ -39,7 +39,7 @@ def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def forwards(members: Iterable[Measurement]) -> list[Measurement]:
-    """The rows of one method that cost less than all rows at smaller steps; the largest step is first.
+    """The rows of one method that cost less than each row at a smaller step; the largest step is first.
 
     Methods that choose steps or iterations by trial runs may cost more at large steps.
     """
@@ -67,7 +67,7 @@ def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
 
 
 def _scenes_with_lines(rows: Sequence[Measurement]) -> list[str]:
-    """The scenes in which some method has at least two points; else all scenes."""
+    """The scenes in which a method has at least two points, or all scenes if there are none."""
     scenes = list(dict.fromkeys(row.scene for row in rows))
     with_lines = {scene for (scene, _, _), members in groups(rows).items() if len(members) > 1}
     return [scene for scene in scenes if scene in with_lines] or scenes
@@ -110,7 +110,7 @@ Pairs = list[tuple[float, float]]
 def _chart(
     shown: Sequence[Measurement], scenes: Sequence[str], field: str, label: str, series: Callable[..., Pairs]
 ) -> tuple[Figure, list[Axes], list[Line2D]]:
-    """(figure, panel of each scene, entries of the legend); each method is a line through `series(rows)`."""
+    """The figure, a panel for each scene, and the legend's entries. A method is a line through `series(rows)`."""
     variants = _variants_by_engine(shown)
     figure, panels = _panels(scenes, 3.6)
     for index, (panel, scene) in enumerate(zip(panels, scenes, strict=True)):
@@ -130,7 +130,7 @@ def _chart(
 def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
     """A panel for each scene with error against CPU time and the Pareto front of all rows.
 
-    Each featured method is a line through the rows that `forwards` keeps. Rows of other methods are small grey dots.
+    A featured method is a line through its rows from `forwards`. Rows of other methods are small grey dots.
     """
 
     def pairs(members: Iterable[Measurement]) -> Pairs:
@@ -178,11 +178,11 @@ def error_against_step(
 
 
 def _guides(panel: Axes) -> None:
-    """Draw a fan of slopes as far as possible from the lines of the panel; the limits of the axes stay the same."""
+    """Draw a fan of slopes as far as possible from the lines of the panel, within the limits of the axes."""
     low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
     size = high - low  # decades
     width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]
-    # Points of the fan and its numbers relative to the vertex, as fractions of the panel.
+    # Positions of the fan's points and numbers, relative to its vertex and as fractions of the panel.
     slopes = [(share * width, slope * share * width) for slope in SLOPES for share in np.linspace(0, 1, 5)]
     fan = np.array([*slopes, *((width + gap, slope * width) for slope in SLOPES)]) / size
     lines = [(np.log10(line.get_xydata()) - low) / size for line in panel.lines]
@@ -194,7 +194,7 @@ def _guides(panel: Axes) -> None:
     points = np.concatenate(occupied) if occupied else np.array([[0.0, 1.0]])
     distances = KDTree(points).query(corners + fan)[0].min(axis=1)
     left, bottom = low + corners[distances.argmax(), 0] * size
-    for slope, alignment in zip(SLOPES, ("top", "center", "bottom"), strict=True):  # numbers must not overlap
+    for slope, alignment in zip(SLOPES, ("top", "center", "bottom"), strict=True):  # the alignment keeps numbers apart
         end = bottom + slope * width
         panel.plot(10 ** np.array([left, left + width]), 10 ** np.array([bottom, end]), color=LIGHT.quiet,
                    linewidth=0.8, zorder=2, scalex=False, scaley=False)  # fmt: skip
@@ -218,7 +218,7 @@ ENGINE_NAMES = {
     EXACT_SOLVER: "plain code, exact multipliers",
 }
 
-CostErrorPairs = Sequence[tuple[float, float]]  # (CPU seconds per simulated second, error), by rising cost
+CostErrorPairs = Sequence[tuple[float, float]]  # pairs (CPU seconds per simulated second, error) with increasing cost
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""Chunks: each contains some cases of one subject, and is one task of a worker with one stored answer.
+"""Chunks of cases. A chunk contains some cases of one subject; it is a task of a worker and has one stored answer.
 
 The cases of a chunk that crashes or times out are run again one by one. So the failing case is identified, and the
-results of the others are kept.
+results of other cases are kept.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Chunk(Task):
         return self.subject.draw(self.seed, number, self.kinds, self.decades)
 
     def run(self) -> Values:
-        """A list of results by case, as JSON."""
+        """The results of the cases as a JSON list."""
         results = []
         for number in range(self.first, self.first + self.count):
             case = self.draw(number)
@@ -76,7 +76,7 @@ class CaseResult:
 
 
 def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
-    """Yield the result of each case of these chunks.
+    """Yield the results of all cases in these chunks.
 
     A chunk of one case that crashed or timed out is a fault with an infinite error. An unfinished chunk of several
     cases yields nothing, since its cases are run again one by one.
@@ -96,9 +96,9 @@ def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
 def make_chunks(
     subjects: Sequence[Subject], seed: int, cases: int, kinds: Sequence[str], decades: int, oracles: tuple[str, ...]
 ) -> list[Chunk]:
-    """Chunks of the first cases of a seed, with the subjects in turn.
+    """Chunks of the first cases of a seed; the subjects alternate.
 
-    A subject that supports none of `kinds` gets all kinds that it supports.
+    If a subject supports no kind in `kinds`, its cases have all kinds that it supports.
     """
     out = []
     for first in range(0, cases, CHUNK_SIZE):
@@ -110,13 +110,13 @@ def make_chunks(
 
 
 def unfinished_cases(answers: Mapping[Chunk, Answer]) -> list[Chunk]:
-    """Chunks of one case each for the cases of chunks that crashed or timed out."""
+    """Chunks with a single case for each case of the chunks that crashed or timed out."""
     ended = [chunk for chunk, answer in answers.items() if not answer.finished and chunk.count > 1]
     return [replace(chunk, first=chunk.first + n, count=1) for chunk in ended for n in range(chunk.count)]
 
 
 def stored_answers(store: Store, chunks: Sequence[Chunk]) -> dict[Chunk, Answer]:
-    """Stored answers of these chunks, and of their cases that were run one by one."""
+    """The stored answers of these chunks, and of their cases that were run separately."""
 
     def stored(wanted: Sequence[Chunk]) -> dict[Chunk, Answer]:
         found = store.answers(wanted)
@@ -140,7 +140,7 @@ def chunk_from_json(text: str, subjects: Sequence[Subject]) -> Chunk | None:
 
 
 def case_label(case: CaseResult) -> str:
-    """Name of the subject, followed by the kinds of joints if these are not all its kinds."""
+    """The subject's name, followed by the kinds of joints if the chunk does not have all kinds of the subject."""
     chunk = case.chunk
     kinds = "" if chunk.kinds == chunk.subject.kinds else f" ({', '.join(chunk.kinds)})"
     return f"{chunk.subject.name}{kinds}"
@@ -150,7 +150,7 @@ CHECKS_HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "fault
 
 
 def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows under CHECKS_HEADER; the last rows count the cases that each subject refused."""
+    """Rows under CHECKS_HEADER. The last rows have the number of refused cases by subject."""
     checks: dict[tuple[str, str], list[tuple[float, float]]] = {}
     for case in cases:
         for check, pair in case.result.errors.items():
@@ -170,7 +170,7 @@ def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
 
 
 def count_refusals(cases: Iterable[CaseResult]) -> Mapping[str, int]:
-    """Number of cases that each subject refused as unsupported."""
+    """Subject -> number of cases that it refused as unsupported."""
     return Counter(
         case_label(case) for case in cases if any(reason.startswith("unsupported") for reason in case.result.skipped)
     )
@@ -184,7 +184,7 @@ FINDINGS_HEADER = ("subject", "check", "error", "may be", "seed", "decades", "ca
 
 
 def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
-    """Rows under FINDINGS_HEADER, one for each failing check of a case."""
+    """A row under FINDINGS_HEADER for each failing check of each case."""
     out = []
     for case in cases:
         case_columns = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]
@@ -194,7 +194,7 @@ def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
 
 
 def count_skip_reasons(cases: Iterable[CaseResult]) -> list[tuple[str, str, int]]:
-    """(oracle, skip reason, number of cases), the most frequent first; numbers in reasons become "..."."""
+    """Triples (oracle, skip reason, number of cases); frequent reasons come first. Numbers in reasons become "..."."""
     reasons: Counter[tuple[str, str]] = Counter()
     for case in cases:
         for reason in case.result.skipped:

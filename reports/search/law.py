@@ -1,8 +1,8 @@
 """Relative differences of motions and forces, and the tolerance for rounding and for an iterative solver.
 
 A check fails if its error exceeds both a floor and NOISE_MARGIN times the noise of the case. The noise is the largest
-difference between the case and copies of it that are slightly shifted, turned and rounded differently, and between the
-engine and the same engine with a smaller solver tolerance (`Engine.stricter`). Nearly dependent rows, large mass ratios
+change of the result if the case is slightly shifted, turned and rounded differently, or if the solver has a smaller
+tolerance (`Engine.stricter`). Nearly dependent rows, large mass ratios
 and combined runs increase the noise.
 """
 
@@ -26,11 +26,11 @@ from reports.gate.change import Nudge
 
 Array = NDArray[np.float64]
 
-NOISE_MARGIN = 10.0  # Above 1, since the noise is the maximum of few samples.
-NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # The shift is relative to the distance, the rotation in radians.
-LAW_TOLERANCE = 1e-9  # A thousand times the error of rounding with independent rows.
+NOISE_MARGIN = 10.0  # The margin is above 1, since the noise is the maximum of few samples.
+NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # NUDGE_SHARE is the shift relative to a distance, and the rotation in radians.
+LAW_TOLERANCE = 1e-9  # The tolerance is a thousand times the rounding error with independent rows.
 PRECISION_MARGIN = 10.0  # Tolerance in units of the engine's precision.
-INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # Step in units of the mechanism's time scale, and number of steps.
+INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # The step is in units of the mechanism's time scale.
 Errors = Mapping[str, tuple[float, float]]  # (error, tolerance) by check.
 
 
@@ -46,22 +46,22 @@ class Fault(Exception):
 
 
 def iter_nudged(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
-    """Yield slightly shifted, rotated and rounded copies, each with the function that transforms a run back.
+    """Yield copies that are slightly shifted, rotated and rounded, each with a function that transforms a run back.
 
-    The shift is at most NUDGE_SHARE times the largest of `away` [m], the length scale and the coordinates of bodies.
+    The shift is at most NUDGE_SHARE times the maximum of `away` [m], the length scale and the coordinates of bodies.
     The rotation is at most NUDGE_SHARE radians.
     """
     random = np.random.default_rng(NUDGE_COUNT)
     far = NUDGE_SHARE * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
     for seed, (x, y, turn) in enumerate(random.uniform(-1.0, 1.0, (NUDGE_COUNT, 3)).tolist()):
         moved, back = Isometry(turn=NUDGE_SHARE * turn, shift=(far * x, far * y))(mechanism)
-        with suppress(InvalidMechanism):  # some joints are closed only to the last digit
+        with suppress(InvalidMechanism):  # rounding may open a joint
             moved = Nudge(seed)(moved)
         yield moved, back
 
 
 def difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
-    """The largest difference of two motions (..., bodies, 3), relative to the largest of `expected` and of `scales`.
+    """The largest difference of two motions (..., bodies, 3), relative to the maximum of `expected` and `scales`.
 
     Angles are multiplied by the mechanism's length scale. The difference is infinite if a number is not finite.
     """
@@ -69,9 +69,9 @@ def difference(mechanism: Mechanism, found: Array, expected: Array, scales: tupl
 
 
 def force_difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
-    """The largest relative difference of forces (..., rows); torques are divided by the mechanism's length scale.
+    """The largest relative difference of forces (..., rows). Torques are divided by the mechanism's length scale.
 
-    A force of NaN is one that the engine does not report; it is ignored.
+    NaN stands for a force that the engine does not report, and is ignored.
     """
     reported = ~np.isnan(found)
     size = np.where(mechanism.is_angular, 1 / mechanism.length_scale, 1.0)
@@ -87,7 +87,7 @@ def _relative(found: Array, expected: Array, size: Array, scales: tuple[Array, .
 
 
 def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array) -> float:
-    """Rotation [rad] of the fastest body, or of the fastest constraint direction, in a step of dt [s] from a state.
+    """The largest rotation [rad] of a body or of a constraint direction in a step of dt [s] from a state.
 
     A constraint direction turns at about the rate |J' v| / (|J| |v|). Above one radian, the result of every integrator
     is dominated by rounding.
@@ -102,7 +102,7 @@ def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array)
 
 
 def driving_force(mechanism: Mechanism, twist: Array) -> float:
-    """Scale [N] of the forces that act: gravity, inertia forces, or the force elements at the start."""
+    """The scale [N] of gravity, inertia forces and forces of elements."""
     rate = np.abs(twist[:, 2]).max()
     speed = np.hypot(twist[:, 0], twist[:, 1]).max()
     pull = np.hypot(*mechanism.gravity) + rate * rate * mechanism.length_scale + speed / mechanism.time_scale
@@ -112,7 +112,7 @@ def driving_force(mechanism: Mechanism, twist: Array) -> float:
 
 
 def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """Errors of an engine's first steps against the equations that it declares for single instants.
+    """Errors of an engine's first steps by the equations that it declares for single instants.
 
     `engines.Engine.instants` returns both sides. Errors are relative to the largest term of the equations.
     """
@@ -129,16 +129,17 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkippe
     for nudged, back in iter_nudged(mechanism):
         others = _instants(engine, nudged)
         if not isinstance(others, NotDeclared):
-            # One of the two runs may have fewer instants.
+            # One run may have fewer instants than the other.
             for instant, other in zip(declared_instants, others, strict=False):
                 noise[instant.check] = max(noise[instant.check], _nudge_effect(mechanism, instant, other, back))
     return {check: (error, max(bound, NOISE_MARGIN * noise[check])) for check, error in missed.items()}
 
 
 def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDeclared:
-    """Instants of the first steps; only the start if something turns by more than a radian in a step, or rolls.
+    """Instants of the first steps. Only the start is used if a body or a constraint direction turns by more than a
+    radian in a step, or if there is a roll.
 
-    The rows of a roll hold only for a closed gap: an open gap turns them by the gap divided by the radius of curvature.
+    The equations of a roll assume a closed gap, and after a step the gap is open.
     """
     dt = INSTANT_STEP * mechanism.time_scale
 
@@ -163,7 +164,7 @@ def _instant_error(mechanism: Mechanism, instant: Instant) -> float:
 
 
 def _nudge_effect(mechanism: Mechanism, instant: Instant, other: Instant, back: Callable[[Trajectory], Three]) -> float:
-    """Sum of the differences of `found` and of `expected` between two descriptions."""
+    """The change of `found` plus the change of `expected` between two descriptions."""
 
     def described_back(values: Array) -> Array:
         motion, force = np.zeros((1, len(mechanism.bodies), 3)), np.zeros((1, mechanism.row_count))

@@ -6,10 +6,11 @@
         wide = mechanism(1, number, kinds=("pin", "slot", "skate"), decades=2)
         whole = mechanism(1, number, kinds=ALL_KINDS)                     # also rods, gears, welds, forces
 
-A case depends on its seed, number, kinds and decades alone. Its integers are drawn by numpy's PCG64 and are the same on
-every machine. A mechanism has 1 to 6 bodies. Most bodies are connected to an earlier body or to the ground by a joint
+A case depends only on its seed, number, kinds and decades. Its integers are drawn by numpy's PCG64, so they are the
+same on every machine. A mechanism has 1 to 6 bodies. Most bodies are connected to an earlier body or to the ground by a
+joint
 of the selected kinds. Up to three more joints close loops. Every mechanism has gravity or moves at the start.
-The rows of the joints are independent (`recipe.DEPENDENCE_LIMIT`), and a degree of freedom is left or a drive turns.
+The rows of the joints are independent (`recipe.DEPENDENCE_LIMIT`). The mechanism has a degree of freedom or a drive.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ from reports.search.recipe import Held, Standing, build
 
 DRAWN_BODIES, DRAWN_LOOPS = 6, 3
 DECADES_LIMIT = 6
-# Pairs of shapes (first rim, second rim) that can roll with all sizes.
+# Pairs of shapes (first rim, second rim) that can roll with rims of any size.
 RIM_PAIRS = (
     ("line", "circle"),
     ("line", "ellipse"),
@@ -59,17 +60,17 @@ Kinds = Sequence[str]
 
 @validated
 def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decades: Decades = 0) -> Mechanism:
-    """The mechanism of `recipe` with the same arguments."""
+    """The mechanism that is built from `recipe` with the same arguments."""
     return build(recipe(seed, number, kinds, decades))
 
 
 @validated
 def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decades: Decades = 0) -> Recipe:
-    """Case `number` of a seed, with joints and forces of these `kinds`; their order has no effect.
+    """Case `number` of a seed, with joints and forces of these `kinds`. The order of `kinds` has no effect.
 
-    Masses are from 0.1 to 10 kg, and lengths from 0.1 m to some metres. `decades` extends both ranges by so many powers
-    of ten in both directions, and changes the units of length, mass and time by up to so many powers. Raises
-    InvalidMechanism for unknown kinds, or without any.
+    Masses are from 0.1 to 10 kg, and lengths from 0.1 m to some metres. `decades` extends both ranges by this number of
+    powers of ten at both ends. The units of length, mass and time change by up to the same number of powers. Raises
+    InvalidMechanism for unknown kinds or for no kinds.
     """
     if not kinds or not {*kinds} <= {*ALL_KINDS, *SINGULAR_KINDS}:
         raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(ALL_KINDS)}")
@@ -120,7 +121,8 @@ class _Draw(Integers):
     def _independent(
         self, standing: Standing, links: Sequence[RecipeLink]
     ) -> tuple[tuple[RecipeLink, ...], Sequence[Held]]:
-        """The links whose joints are independent and leave a degree of freedom, and these joints."""
+        """The links that can be combined, and their joints. The joints are independent and leave a degree of freedom or
+        a drive."""
         held_joints: list[Held] = []
         kept_links: list[RecipeLink] = []
         freedom = 3 * len(standing.bodies)
@@ -130,7 +132,7 @@ class _Draw(Integers):
                 continue
             try:
                 joints = [*held_joints, standing.held(link, len(kept_links) + 1)]
-            except InvalidMechanism:  # curves that don't fit
+            except InvalidMechanism:  # these curves can't roll on each other
                 continue
             freedom_left = freedom - len(joints[-1].rows)
             driven = any(kept_link.kind == "drive" for kept_link in (*kept_links, link))
@@ -188,13 +190,13 @@ class _Draw(Integers):
 
 
 def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
-    """A link, preceded by the pins that it needs."""
+    """A link and, before it, the pins that it needs."""
     if link.kind == FOLD:
         return RecipeLink("pin", 0, link.first, link.far), RecipeLink("pin", 0, link.second, link.at), link
     return (RecipeLink("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)
 
 
-SHAPE_COUNT = 6  # Number of shapes by seed and kinds; every second shape has a loop.
+SHAPE_COUNT = 6  # Number of shapes for a seed and kinds; every second shape has a loop.
 CASES_PER_SHAPE = 10  # Number of consecutive cases with the same shape.
 SHAPE_TRIALS = 400  # Number of recipes that are tried as shapes.
 
@@ -228,9 +230,9 @@ def _shapes(engine: Engine, seed: int, kinds: tuple[str, ...], decades: int) -> 
 
 
 def renumber(shape: Recipe, whole: Whole) -> Recipe:
-    """A recipe of the same shape with new numbers; `whole(low, high)` draws an integer, both ends included.
+    """A recipe of the same shape with new numbers. `whole(low, high)` draws an integer from `low` to `high`.
 
-    Zero stays zero, since engines build a drive at rest differently from one that turns. The ratio of a gear does not
+    Zero stays zero, since engines build a drive at rest differently from a turning drive. The ratio of a gear does not
     change, since it is a constant of the compiled model.
     """
 
@@ -253,7 +255,7 @@ def renumber(shape: Recipe, whole: Whole) -> Recipe:
         candidate = replace(shape, parts=parts, links=links, gravity=pull)
         try:
             mechanism = build(candidate)
-        except InvalidMechanism:  # rows that are nearly dependent
+        except InvalidMechanism:  # the rows are nearly dependent
             continue
         if any(pull) or mechanism.twist.any():
             return candidate

@@ -1,9 +1,9 @@
-"""Convergence check: a short motion and its reactions against the judge, at two or more steps.
+"""Convergence check. A short motion and its reactions are compared with the judge's at two or more steps.
 
 The step is halved, at most to 1/FINEST_DIVISION, until poses and reactions converge with the engine's declared order.
 Divergence at a long step is accepted if the motion converges at shorter steps. An error that does not converge is a
-fault, with three exceptions: it is noise (`reports.search.law`), the declared compliance explains it, or a textbook
-method of the same order does not converge either.
+fault unless it is noise (`reports.search.law`), the declared compliance explains it, or a textbook method of the same
+order does not converge either.
 """
 
 from __future__ import annotations
@@ -40,18 +40,20 @@ from reports.search.relations import ESTIMATE_MARGIN
 Array = NDArray[np.float64]
 Floors = dict[str, float]
 
-MOTION_SPAN = 0.4  # Duration in units of the mechanism's time scale: too short for exponential growth of errors.
-MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS: steps between two samples.
-# Tolerance relative to the error that the declared order predicts from the coarser step. The margin covers the next
+# Duration in units of the mechanism's time scale, which is too short for exponential growth of errors.
+MOTION_SPAN = 0.4
+MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS is the number of steps between two samples.
+# Largest ratio of an error to its prediction, by the declared order, from the error at twice the step. The margin
+# covers the next
 # power of the step and the sampling of the error (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
 # Smallest tolerances, relative to the motion. They cover rounding in combined runs and in drives of large inertias.
 ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
-DIVERGED_ERROR = 10.0  # Relative to the motion: a run with a larger error has diverged.
-DISTANT_POSE = 0.1  # Relative to the length scale: with a larger pose error, reactions are not compared.
-CACHED_MECHANISMS = 16  # Above `chunk.CHUNK_SIZE`: all engines run one chunk of cases before the next chunk.
-RIGID_COMPLIANCE = 1e-10  # In units of the squared time scale: a joint with a smaller compliance counts as ideal.
+DIVERGED_ERROR = 10.0  # A run with a larger error, relative to the motion, has diverged.
+DISTANT_POSE = 0.1  # Reactions are not compared if the pose error relative to the length scale is larger.
+CACHED_MECHANISMS = 16  # More than `chunk.CHUNK_SIZE`, since all engines run a chunk of cases before the next chunk.
+RIGID_COMPLIANCE = 1e-10  # A joint with a smaller compliance, in units of the squared time scale, counts as ideal.
 ENGINE_WARNED = CheckSkipped("the engine warns that something is wrong")
 
 
@@ -61,7 +63,8 @@ def judge_motion(mechanism: Mechanism) -> Trajectory:
 
 
 def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """(error at the finest step, tolerance) of "motion", "reactions" and, with an error estimate, "estimate".
+    """(error at the finest step, tolerance) for "motion" and "reactions", and for "estimate" if the run has an error
+    estimate.
 
     Raises Fault if a run diverges without a warning.
     """
@@ -102,7 +105,7 @@ def _run(engine: Engine, mechanism: Mechanism, dt: float, parts: int) -> Traject
 
 
 def _has_lasting_compliance(engine: Engine, mechanism: Mechanism, dt: float) -> bool:
-    """Whether the compliance of joints is visible and does not become smaller with the step."""
+    """Whether the compliance of the joints is large enough to matter and does not fall with the step."""
     coarse, fine = (engine.regularisation(mechanism, step) for step in (dt, dt / 2))
     if coarse is None or fine is None:
         return False
@@ -121,7 +124,7 @@ def _tolerance_for(promise: ConvergenceOrder, name: str, coarser: float, floor: 
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """A mechanism in an engine, with the judge's motion; `dt`: the coarse step [s]."""
+    """A mechanism in an engine, with the judge's motion. `dt`: the largest step [s]."""
 
     engine: Engine
     mechanism: Mechanism
@@ -131,9 +134,9 @@ class _Case:
 
     @cached_property
     def size(self) -> float:
-        """Largest displacement [m], with or without joints.
+        """The largest displacement [m], with joints or without them.
 
-        Its lower bound is chosen so that rounding stays below ERROR_FLOORS.
+        The lower bound keeps rounding below ERROR_FLOORS.
         """
         mechanism, arm = self.mechanism, np.array([1.0, 1.0, self.mechanism.length_scale])
         moved = float(np.abs((self.truth.pose - mechanism.pose) * arm).max())
@@ -153,7 +156,7 @@ class _Case:
         return np.nan_to_num(self.truth.reaction), arms * max(acting, np.finfo(float).tiny)
 
     def apart(self, run: Trajectory, other: Trajectory | None = None) -> Floors:
-        """Relative differences of a run from another one, or from the judge's motion."""
+        """Relative differences of a run from another run or from the judge's motion."""
         other = other or self.truth
         moved = run.pose[1:] - self.mechanism.pose, other.pose[1:] - self.mechanism.pose
         return {
@@ -162,7 +165,7 @@ class _Case:
         }
 
     def halved(self, run: Trajectory) -> tuple[Trajectory, int, dict[str, tuple[float, float]]] | CheckSkipped:
-        """The finest run, its number of steps in `dt`, and (error, tolerance) from the declared order."""
+        """The run at the smallest step, its number of steps in `dt`, and (error, tolerance) by the declared order."""
         out: dict[str, tuple[float, float]] = {}
         parts, warned, silent, longest, coarse = 1, False, 0, 0, run
         while parts < FINEST_DIVISION and (not out or _fails(out)):
@@ -182,13 +185,13 @@ class _Case:
                 is_comparable = floor < DIVERGED_ERROR and (coarser[name] < DIVERGED_ERROR or parts == FINEST_DIVISION)
                 if is_comparable and (name not in out or not out[name][0] <= out[name][1]):
                     out[name] = (error, _tolerance_for(self.promise, name, coarser[name], floor))
-        # Two successive runs without a warning count as silent.
+        # An engine counts as silent only after two successive runs without a warning.
         if warned and longest < 2 and (_fails(out) or not np.isfinite(run.pose).all()):
             return ENGINE_WARNED
         return run, parts, out
 
     def excuse(self, run: Trajectory, parts: int, out: dict[str, tuple[float, float]]) -> CheckSkipped | None:
-        """Add noise and declared compliance to the tolerances; return the reason if the case is to be skipped."""
+        """Add noise and declared compliance to the tolerances. Return a reason if the case must be skipped."""
         if not np.isfinite(run.pose).all():
             stricter = self.engine.stricter(self.mechanism)
             if stricter is not None and np.isfinite(_run(stricter, self.mechanism, self.dt, parts).pose).all():
@@ -208,7 +211,8 @@ class _Case:
         return None
 
     def noise(self, run: Trajectory, parts: int) -> Floors:
-        """Differences by rounding, of the run and of the judge's motion, and by a smaller solver tolerance."""
+        """The largest changes of the run and of the judge's motion by rounding, and of the run by a smaller solver
+        tolerance."""
         pairs: list[tuple[Trajectory, Trajectory]] = []
         for nudged, back in iter_nudged(self.mechanism):
             truth = judge_motion.__wrapped__(nudged)  # pyright: ignore[reportFunctionMemberAccess]
@@ -222,7 +226,7 @@ class _Case:
         return {name: max(pair_difference[name] for pair_difference in differences) for name in ERROR_FLOORS}
 
     def resolved(self, parts: int) -> bool:
-        """Whether a textbook method of the declared order (at most 4) converges with that order in two halvings.
+        """Whether a textbook method of the declared order (at most 4) has this order while the step is halved twice.
 
         No method converges, for example, if the length of a spring passes zero within a step and reverses its force.
         """
@@ -243,10 +247,11 @@ class _Case:
         )
 
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
-        """(error, tolerance) against the judge's run with the regularisation that the engine declares at this step.
+        """Errors by a run of the judge with the regularisation that the engine declares at this step, and tolerances.
 
-        A compliance that depends on the step converges with its order only if it is small. So the judge is run with the
-        same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of two changes of this run.
+        An error by a compliance that depends on the step has the declared order only if it is small. So the judge is
+        run with the same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of two changes
+        of the judge's run.
         The first is the change with doubled steps, since the engine integrates other coordinates. The second is the
         change with the compliance scaled by the largest ratio of inverse inertias along the motion, since the judge
         evaluates the inverse inertia at each pose, and MuJoCo only at the start.
@@ -259,7 +264,7 @@ class _Case:
 
         def run_judge(compliance: float, every: int) -> Trajectory:
             soft = replace(softness, compliance=compliance * softness.compliance)
-            samples = MOTION_SAMPLES * COARSE_STEPS  # many samples, so that the largest ratio of inertias is found
+            samples = MOTION_SAMPLES * COARSE_STEPS  # the largest ratio of inertias needs many samples
             return in_numpy(mechanism, samples, spacing / COARSE_STEPS, order, every, soft, least=0.0)
 
         try:
@@ -297,18 +302,18 @@ class _Case:
 
 
 CLAIM_SPAN = 2.0  # Duration in units of the mechanism's time scale.
-# The case's number selects the number of steps in CLAIM_SPAN and the number of steps between samples.
+# Choices for the number of steps in CLAIM_SPAN and for the steps between samples; the case's number selects one.
 CLAIM_STEPS, SAMPLE_INTERVALS = (40, 100, 200), (1, 2, 5)
 CLAIMED_POSES, CLAIMED_REACTIONS, NEEDLESS_REPORT = "claimed", "claimed of reactions", "reported, though right"
 
 
 def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | CheckSkipped:
-    """(error, claim) of a method with an error estimate, over a longer motion, at steps that users choose.
+    """Errors of a method with an error estimate and the bounds that it claims, over a longer motion at usual steps.
 
-    A method claims an error of at most CLAIM for poses until `unresolved_at`, relative to a radian or the length scale.
+    Until `unresolved_at` a method claims an error of at most CLAIM for poses, relative to a radian or the length scale.
     It claims an error of at most FORCES for reactions, relative to the largest force, unless it warns of reactions. Any
-    other warning withdraws both claims. NEEDLESS_REPORT is 1 if a method warns although all poses hold the claim, else
-    0; it is counted but is no fault.
+    other warning withdraws both claims. The error NEEDLESS_REPORT is 1 if a method warns although all poses are within
+    the claim, else 0. It is not a fault.
     """
     steps, every = (
         CLAIM_STEPS[number % len(CLAIM_STEPS)],
@@ -325,7 +330,7 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
 
 
 def check_claims(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, tuple[float, float]]:
-    """(error, claim) by check of a run whose samples are among those of the judge's motion."""
+    """(error, claim) by check. The judge's motion must contain the samples of the run."""
     at = np.linspace(0, len(truth.t) - 1, len(run.t)).round().astype(int)
     length, arm = mechanism.length_scale, np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
     missed = np.nan_to_num(np.abs(run.pose - truth.pose[at]) / [length, length, 1.0], nan=np.inf).max(axis=(1, 2))

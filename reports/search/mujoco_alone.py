@@ -1,6 +1,6 @@
-"""Random models in MuJoCo's own format, and their equations of motion at the start.
+"""Random models in MuJoCo's format, and their equations of motion at the start.
 
-No adapter is used, so a finding is a fault of MuJoCo itself. A model is a planar tree of slides and hinges with
+No adapter is used, so a finding is a fault of MuJoCo. A model is a planar tree of slides and hinges with
 `connect`, `weld`, `joint` and `tendon` equalities. The equations are written in the coordinates of the tree. Complex
 steps give derivatives without truncation error. Only the compliance (`efc_R`) of the constraints comes from MuJoCo.
 """
@@ -32,13 +32,13 @@ DERIVATIVE_STEP = 1e-30  # imaginary step of a derivative
 
 @dataclass(frozen=True)
 class RawBody:
-    """A body in integers.
+    """A body of a model, described by integers.
 
     `parent`: number of an earlier body, or 0 for the world. `offset`: position in the parent's frame, in tenths of a
-    metre. `angle`: relative to the parent, in steps of 0.3 rad. `slides`: number of slides, the first along x and the
-    second along y of the body's frame. `turns`: whether the body has a hinge at the origin of its frame. `centre`:
-    centre of mass, in tenths of a metre. `mass`, `inertia` about the centre: steps of `parts.ladder`. `velocity`: of
-    the slides and the hinge, in steps of 0.5 m/s and 0.5 rad/s.
+    metre. `angle`: angle relative to the parent, in steps of 0.3 rad. `slides`: number of slides along the axes x and y
+    of the body's frame. `turns`: whether the body has a hinge at the origin of its frame. `centre`: position of the
+    centre of mass, in tenths of a metre. `mass`, `inertia`: mass and moment of inertia about the centre as steps of
+    `parts.ladder`. `velocity`: rates of both slides and of the hinge, in steps of 0.5 m/s and 0.5 rad/s.
     """
 
     parent: int = 0
@@ -60,12 +60,12 @@ class RawBody:
 
 @dataclass(frozen=True)
 class Equality:
-    """An equality constraint in integers.
+    """An equality constraint of a model, described by integers.
 
-    `first`, `second`: numbers of the bodies; `second` may be 0, the world, for "connect" and "weld". The other kinds
+    `first`, `second`: numbers of the bodies. With "connect" and "weld", `second` may be the world, 0. Other kinds
     couple the last coordinates of both bodies. `at`: anchor of a "connect" in the first body's frame, in tenths of a
-    metre. `curve`: twice the linear and the quadratic coefficient of the first coordinate or tendon as a function of
-    the second. A tendon is the sum of a coordinate and the previous coordinate.
+    metre. `curve`: for the first coordinate or tendon as a polynomial of the second one, twice the linear coefficient
+    and twice the quadratic coefficient. A tendon is the sum of a coordinate and the previous coordinate.
     """
 
     kind: str
@@ -77,7 +77,7 @@ class Equality:
 
 @dataclass(frozen=True)
 class RawModel:
-    """A model in integers; `gravity` in m/s^2; `sparse`: whether MuJoCo uses a sparse Jacobian."""
+    """A model, described by integers. `gravity` is in m/s^2. `sparse`: whether MuJoCo uses a sparse Jacobian."""
 
     parts: tuple[RawBody, ...]
     links: tuple[Equality, ...]
@@ -90,7 +90,7 @@ class RawModel:
 
 
 def coordinates(model: RawModel) -> list[tuple[int, str]]:
-    """(body from 1, "slide 0", "slide 1" or "hinge") in MuJoCo's depth-first order."""
+    """The coordinates in MuJoCo's depth-first order: (number of the body, "slide 0", "slide 1" or "hinge")."""
 
     def below(body: int) -> list[tuple[int, str]]:
         mine = [(body, name) for name in model.parts[body - 1].rates] if body else []
@@ -101,7 +101,8 @@ def coordinates(model: RawModel) -> list[tuple[int, str]]:
 
 
 def coupled_coordinates(model: RawModel, link: Equality) -> tuple[list[int], list[int]]:
-    """Indices of the coordinates whose sums an equality couples. Raises InvalidMechanism for bodies without any."""
+    """Indices of two sets of coordinates; an equality couples their sums. Raises InvalidMechanism for a body without
+    coordinates."""
     bodies = [body for body, _ in coordinates(model)]
     if link.first == link.second or not {link.first, link.second} <= {*bodies}:
         raise InvalidMechanism(f"model: bodies {link.first} and {link.second} have no coordinates to couple")
@@ -166,7 +167,7 @@ def _across(vector: Numbers) -> Numbers:
     return np.array([-vector[1], vector[0]])
 
 
-Frame = tuple[Numbers, Any, Numbers, Any]  # position (2,) [m], angle [rad], and their rates
+Frame = tuple[Numbers, Any, Numbers, Any]  # position (2,) [m], angle [rad], and the rates of both
 
 
 def _frames(model: RawModel, q: Numbers, v: Numbers) -> list[Frame]:
@@ -185,7 +186,7 @@ def _frames(model: RawModel, q: Numbers, v: Numbers) -> list[Frame]:
 
 
 def _velocities(model: RawModel, q: Numbers, v: Numbers) -> Numbers:
-    """Velocities (3 bodies,) of the centres of mass and of the angles."""
+    """Velocities of the centres of mass and rates of the angles (3 bodies,)."""
     out = []
     for part, (_, angle, speed, rate) in zip(model.parts, _frames(model, q, v)[1:], strict=True):
         out += [*(speed + rate * _across(_turned(angle, np.divide(part.centre, 10)))), rate]
@@ -193,7 +194,7 @@ def _velocities(model: RawModel, q: Numbers, v: Numbers) -> Numbers:
 
 
 def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
-    """The velocity error (rows,) of each equality; its anchor is defined at the start, where q is 0."""
+    """The velocity error (rows,) of each equality. Anchors are defined at the start, where q is 0."""
     start_frames, frames = _frames(model, 0.0 * q.real, 0.0 * q.real), _frames(model, q, v)
     out: list[Numbers] = []
     for link in model.links:
@@ -219,9 +220,9 @@ def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
 class StartEquations:
     """The equations of motion of a model at the start.
 
-    `root` (coordinates, coordinates): S, where S^T S is the mass matrix. `free`: S times the accelerations without
-    equalities. `rows`, `right`: J and J a of each equality. `bent`: the part of `right` that comes from the curve of
-    the equality. `rates` (coordinates,): velocities that satisfy the equalities.
+    `root` (coordinates, coordinates): a root S of the mass matrix S^T S. `free`: S times the accelerations without
+    equalities. `rows`: Jacobian J of each equality. `right`: J times the accelerations, for each equality. `bent`: the
+    part of `right` by the curve of an equality. `rates` (coordinates,): velocities that satisfy the equalities.
     """
 
     root: Array
@@ -232,9 +233,9 @@ class StartEquations:
     rates: Array
 
     def expected(self, give: Array, bent: bool = True) -> Array:
-        """Accelerations of the coordinates; `give` (rows, any): compliance of the equalities' rows.
+        """Accelerations of the coordinates. `give` (rows, any): compliance of the equalities' rows.
 
-        bent: whether the velocity term of curved equalities is included; MuJoCo up to 4.0.1 omits it.
+        bent: whether to include the velocity term of curved equalities, which MuJoCo up to 4.0.1 omits.
         """
         rows: Any = np.linalg.solve(self.root.T, np.vstack([np.zeros((0, len(self.free))), *self.rows]).T).T
         right = [item if bent else item - curve for item, curve in zip(self.right, self.bent, strict=True)]
@@ -242,7 +243,7 @@ class StartEquations:
         return np.asarray(np.linalg.solve(self.root, law.motion), dtype=np.float64)
 
 
-@lru_cache(maxsize=4)  # used when a model is drawn, compared and run
+@lru_cache(maxsize=4)  # a model is drawn, compared and run in succession
 def start_equations(model: RawModel) -> StartEquations:
     """The equations of a model. Raises InvalidMechanism for nearly dependent rows or a body joined to itself."""
     order = coordinates(model)
@@ -275,9 +276,9 @@ def start_equations(model: RawModel) -> StartEquations:
 
 
 def draw_model(seed: int, number: int, kinds: tuple[str, ...]) -> RawModel:
-    """Case `number` of a seed with equalities of these kinds; the same on every machine.
+    """Case `number` of a seed with equalities of these kinds. It is the same on every machine.
 
-    If all kinds are HINGED_KINDS, no body has slides.
+    No body has slides if all kinds are among HINGED_KINDS.
     """
     random = Integers([seed, number, len(kinds)])
     while True:
@@ -293,7 +294,8 @@ def _draw_once(random: Integers, kinds: tuple[str, ...]) -> RawModel:
     for index in range(count):
         slides = 0 if hinged else (0, 0, 1, 2)[whole(0, 3)]
         part = RawBody(
-            parent=whole(0, index) if whole(1, 4) == 1 else whole(min(1, index), index),  # few children of the world
+            # few bodies are children of the world
+            parent=whole(0, index) if whole(1, 4) == 1 else whole(min(1, index), index),
             offset=two(8),
             angle=whole(-10, 10),
             slides=slides,

@@ -17,11 +17,10 @@ LAW_CHECKS = ("acceleration", CURVED, "velocity", "without velocity terms")
 
 @dataclass(frozen=True)
 class Oracle:
-    """`errors` returns (error, tolerance) by check, or the reason why the oracle does not apply.
-
-    `column`: heading of the page's table; the column counts the cases of all `checks` together. `question`: sentence of
-    the page. `is_default`: whether the search uses the oracle without the option --oracles. MOTION_ORACLE lists no
-    checks; a check that no oracle lists belongs to MOTION_ORACLE.
+    """A kind of check. `errors` returns (error, tolerance) by check, or the reason why the oracle does not apply.
+    `column`: heading of a column on the page, which counts the cases of all `checks` together. `question`: sentence on
+    the page. `is_default`: whether a search without the option --oracles uses the oracle. Checks that no oracle lists
+    belong to MOTION_ORACLE.
     """
 
     column: str

@@ -35,13 +35,13 @@ from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 
-RARE_SHARE = 0.01  # Reasons of a smaller share of all cases are counted together.
+RARE_SHARE = 0.01  # Skip reasons with a smaller share of all cases are counted together.
 AXIS_LEAST, AXIS_MOST = 1e-17, 1e2  # Limits of the axis, to which errors are clipped.
 ROW_INCHES = 0.24
 
 
 def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
-    """A line for each subject from the median to the largest error of instants; None if no case has one."""
+    """A line for each subject, from the median to the largest error of single instants; None without such errors."""
     errors_by_subject: dict[str, list[float]] = {}
     for case in cases:
         for law in LAW_CHECKS:
@@ -73,7 +73,7 @@ def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figu
 
 
 def known_subjects(texts: Sequence[str]) -> list[Subject]:
-    """Every registered engine, and MuJoCo alone in all releases that occur in these chunks (JSON texts)."""
+    """All registered engines, and MuJoCo alone in the releases that occur in these chunks (JSON texts)."""
     releases = dict.fromkeys(release_of(json.loads(text)[0]) for text in texts)
     engines = dict.fromkeys([*ENGINES, *OTHERS, plan.GROOVE_SUBJECT.engine])
     return [*(Adapted(engine) for engine in engines), *(Alone(release) for release in releases if release is not None)]
@@ -83,7 +83,7 @@ Stored = tuple[list[CaseResult], list[tuple[Shrink, Answer]], Mapping[PlantedCon
 
 
 def read_stored(store: Store, published: bool = False) -> Stored:
-    """Stored results of the current sources: cases, reduced findings, and controls with planted faults.
+    """The stored cases, reduced findings, and controls with planted faults.
 
     `published`: only cases of `plan.published_chunks`.
     """
@@ -104,7 +104,7 @@ def render_page(
     foot: str,
     planned: int = 0,
 ) -> dict[str, str]:
-    """The files search.md and search_errors.svg; none without cases. `planned`: number of planned cases, or 0."""
+    """The files search.md and search_errors.svg; empty without cases. `planned`: number of planned cases, or 0."""
     if not cases:
         return {}
     picture = draw_distribution(cases)
@@ -139,7 +139,8 @@ def _shown_oracles(cases: Sequence[CaseResult]) -> list[Oracle]:
 
 
 def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """A row for each subject: number of cases, of refused cases, and of judged and failed cases by oracle."""
+    """A row for each subject, with the numbers of its cases, of refused cases, and of judged and failed cases by
+    oracle."""
     subjects: dict[str, list[CaseResult]] = {}
     columns = [oracle.column for oracle in _shown_oracles(cases)]
     for case in cases:
@@ -155,7 +156,7 @@ def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
 
 
 def _skip_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows (oracle, skip reason, number of cases); the last row is the sum of rare reasons."""
+    """Rows (oracle, skip reason, number of cases). Rare reasons are counted together in the last row."""
     reasons = count_skip_reasons(cases)
     frequent = [reason for reason in reasons if reason[-1] >= RARE_SHARE * len(cases)]
     rare_count = sum(count for *_, count in reasons) - sum(count for *_, count in frequent)
@@ -165,7 +166,8 @@ def _skip_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
 
 
 def _finding_rows(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Answer]]) -> list[list[str]]:
-    """A row for each failing check of a subject: number of cases, smallest mechanism, command that finds a case."""
+    """A row for each failing check of a subject, with the number of cases, the smallest mechanism and a command that
+    finds a case."""
     groups: dict[tuple[str, str], list[CaseResult]] = {}
     for case in cases:
         if case.chunk.subject.name != plan.GROOVE_SUBJECT.name:
@@ -192,7 +194,7 @@ def _planted_rows(answers: Mapping[PlantedControl, Answer]) -> list[list[str]]:
 
 
 def _control_cell(answer: Answer) -> str:
-    """The number of the case that detects a fault, and the fault's size if it is not the smallest one."""
+    """The number of the case that detects a fault, and the size of the fault unless it is the smallest size."""
     if not answer.finished:
         return answer.told
     if not answer.number("built"):

@@ -1,4 +1,4 @@
-"""Recipes: mechanisms that are described by small integers, and their JSON."""
+"""Recipes, which describe mechanisms by small integers, and their JSON."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ TOGGLE, FOLD = "toggle", "fold"
 SINGULAR_KINDS = (TOGGLE, FOLD)
 RIM_SHAPES = ("line", "circle", "ring", "ellipse")
 
-ANGLE_UNIT = Decimal("0.3")  # rad; 0 is its only multiple with simple sines and cosines.
+ANGLE_UNIT = Decimal("0.3")  # rad; its only multiple with rational sine and cosine is 0.
 RATE_UNIT = Decimal("0.5")  # m/s and rad/s.
 
 
 @dataclass(frozen=True)
 class RecipeBody:
-    """A body in integers.
+    """A body of a recipe, described by integers.
 
     `parent`: number of an earlier body, or 0 for the ground. `offset`: position relative to the parent, in tenths of
-    `size`. `angle`: in steps of 0.3 rad. `velocity`: in steps of 0.5 m/s and 0.5 rad/s. `size`, `mass`, `gyration`:
-    steps of `ladder`; the radius of gyration is relative to the size.
+    `size`. `angle` is in steps of 0.3 rad. `velocity` is in steps of 0.5 m/s and 0.5 rad/s. `size`, `mass` and
+    `gyration` are steps of `ladder`. `gyration` is the radius of gyration relative to the size.
     """
 
     parent: int = 0
@@ -46,10 +46,10 @@ class RecipeBody:
 
 @dataclass(frozen=True)
 class Rim:
-    """A rolling curve in integers.
+    """A rolling curve of a recipe, described by integers.
 
-    `size`: step of `ladder`, relative to the size of the second body. For an ellipse, `ratio` is the ratio of the axes
-    as a step of `ladder`, and `place` the parameter of the contact point in steps of 0.3 rad.
+    `size`: step of `ladder`, relative to the size of the second body. An ellipse has two more numbers. `ratio`: ratio
+    of the axes as a step of `ladder`. `place`: parameter of the contact point in steps of 0.3 rad.
     """
 
     shape: str = "circle"
@@ -60,17 +60,19 @@ class Rim:
 
 @dataclass(frozen=True)
 class RecipeLink:
-    """A joint or a force element in integers.
+    """A joint or a force element of a recipe, described by integers.
 
-    `first`, `second`: numbers of the bodies; `first` may be 0, the ground. `at`: position relative to the second body,
-    in tenths of that body's size. Other lengths have the same unit. `rims`: the curves of both bodies of a roll.
+    `first`, `second`: numbers of the bodies, where `first` may be the ground, 0. `at`: position relative to the second
+    body,
+    in tenths of that body's size. Other lengths have this unit too. `rims`: the curves of both bodies of a roll.
 
-    `turn`: a direction in the world, in steps of 0.3 rad. It is the direction of a slot, of a blade, of a force, or of
-    the tangent of a contact, with the first body's material on the left. `more`: the distance from `at` to the point
-    that defines the slot's line, or the rate of a drive in steps of 0.5 rad/s. Half of `more` is the ratio of a gear,
-    and the strength of a force or a torque. Rods, springs and dampers: `more` and `turn` are the distance and the
-    direction of the point on the first body. Springs and dampers: `strength` is a step of `ladder`. Springs: `rest` is
-    the deflection at the start, in tenths of the length or in steps of 0.3 rad.
+    `turn`: a direction in the world, in steps of 0.3 rad. It is the direction of a slot, a blade, a force, or the
+    tangent of a contact. The first body's material is to the left of this tangent. `more`: the distance from `at` to
+    the point
+    that defines the slot's line, or the rate of a drive in steps of 0.5 rad/s. For gears, forces and torques, half of
+    `more` is the ratio or the strength. For rods, springs and dampers, `more` and `turn` are the distance and the
+    direction of the point on the first body. `strength` of a spring or damper is a step of `ladder`. `rest` of a spring
+    is the deflection at the start, in tenths of the length or in steps of 0.3 rad.
 
     A toggle is a rod between two points on opposite sides of `at`, where a pin connects the same bodies. The distances
     from `at` along `turn` are `more` and half of `more`. The line of the rod misses `at` by 10^-strength sizes. The
@@ -91,7 +93,8 @@ class RecipeLink:
 
 @dataclass(frozen=True)
 class Recipe:
-    """A mechanism in integers; `gravity` in m/s^2; `decades`: powers of ten of the units of length, mass and time."""
+    """A mechanism, described by integers. `gravity` is in m/s^2. `decades`: powers of ten of the units of length, mass
+    and time."""
 
     parts: tuple[RecipeBody, ...]
     links: tuple[RecipeLink, ...]
@@ -122,7 +125,7 @@ class Integers:
 
 
 def ladder(step: int) -> Decimal:
-    """..., 0.2, 0.5, 1, 2, 5, 10, ... with 1 at step 0."""
+    """The number of a step in the sequence ..., 0.2, 0.5, 1, 2, 5, 10, ... The number of step 0 is 1."""
     return Decimal((1, 2, 5)[step % 3]).scaleb(step // 3)
 
 
@@ -139,7 +142,7 @@ def case_to_json(case: Any) -> str:
 
 
 def case_from_json(text: str, kind: type[Case]) -> Case:
-    """The case of this kind that `case_to_json` wrote. Raises ValueError for other text."""
+    """The inverse of `case_to_json` for a case of this kind. Raises ValueError for other text."""
 
     def made(values: dict[str, Any], kind: type) -> Any:
         hints = get_type_hints(kind)

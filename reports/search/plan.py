@@ -1,4 +1,4 @@
-"""The cases of the published page, with seeds from the commit's hash, and batches of cases with random seeds."""
+"""The cases of the published page with seeds from the commit's hash, and batches of cases with random seeds."""
 
 from __future__ import annotations
 
@@ -22,18 +22,20 @@ from reports.search.subjects import Adapted, Alone, Subject, is_shaped
 
 COMMIT_RULE, SOURCES_RULE = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
 SEED_DECADES = (0, 2, 4)  # Decades by seed.
-PLANNED_CASES, ALONE_CASES = 100, 1000  # Cases of a seed: of an engine, and of MuJoCo alone.
-# Cases of a seed for MJX, which compiles each shape. A case takes three seconds there, elsewhere 0.005 to 0.8.
+PLANNED_CASES, ALONE_CASES = 100, 1000  # Number of cases of a seed for an engine, and for MuJoCo alone.
+# Number of cases of a seed for MJX, which compiles each shape. A case takes three seconds in MJX, and 0.005 to 0.8 s in
+# other engines.
 COMPILED_CASES = 20
-SINGULAR_CASES = 60  # Cases with nearly dependent rows, of an engine that has pins and rods.
+SINGULAR_CASES = 60  # Number of cases with nearly dependent rows, for engines with pins and rods.
 KIND_TRIALS = 60  # Number of mechanisms that are tried for one kind of joint.
-# Pymunk's usual slot; `engines.pymunk.joints.slide` says when it is wrong.
+# Pymunk's usual slot; `engines.pymunk.joints.slide` states when it is wrong.
 GROOVE_SUBJECT = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
 
 
 @cache
 def seed_origin() -> tuple[str, str]:
-    """(rule, text from which the seeds are computed): the hash of the last commit, or of all sources without git."""
+    """A rule and the text from which seeds are computed. It is the hash of the last commit, or of all sources without
+    git."""
     if (ROOT / ".git").exists():
         command = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
         answer = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -44,7 +46,8 @@ def seed_origin() -> tuple[str, str]:
 
 
 def published_seeds(many: int = len(SEED_DECADES)) -> tuple[int, ...]:
-    """Half of the first eight hexadecimal digits of the SHA-256 of "ORIGIN NUMBER", with numbers from 1."""
+    """Seeds from the SHA-256 of "ORIGIN NUMBER" with numbers from 1. A seed is half of the first eight hexadecimal
+    digits."""
     texts = (f"{seed_origin()[1]} {number}" for number in range(1, many + 1))
     return tuple(int(digest(text, SHORT), 16) // 2 for text in texts)
 
@@ -68,14 +71,13 @@ def _is_built(engine: Engine, kind: str, number: int) -> bool:
 
 
 def all_subjects() -> list[Subject]:
-    """Every variant of every installed engine, and MuJoCo alone."""
+    """All variants of the installed engines, and MuJoCo alone."""
     return [*(Adapted(engine) for engine in (*VARIANTS, *INSTALLED)), Alone()]
 
 
 def published_chunks() -> list[Chunk]:
-    """All engines in mechanisms of the commit's seeds, with the kinds that the engine supports.
-
-    Nearly dependent rows, and pymunk's grooves, have chunks of their own.
+    """All engines in mechanisms of the commit's seeds, with the kinds that the engine supports. There are separate
+    chunks for nearly dependent rows and for pymunk's grooves.
     """
     out: list[Chunk] = []
     for seed, decades in zip(published_seeds(), SEED_DECADES, strict=True):
@@ -92,7 +94,7 @@ def published_chunks() -> list[Chunk]:
 
 
 def fresh_chunks(subjects: Sequence[Subject], cases: int) -> Iterator[list[Chunk]]:
-    """Yield batches without end: `cases` cases of each subject, with a new random seed for each batch."""
+    """Yield an endless sequence of batches. A batch has a new random seed and `cases` cases of each subject."""
     for number in count():
         seed, decades = secrets.randbits(31), SEED_DECADES[number % len(SEED_DECADES)]
         mixed = secrets.SystemRandom().sample(subjects, len(subjects))  # a short run may end before the last subject

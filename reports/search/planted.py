@@ -1,7 +1,7 @@
-"""Planted faults: controls that give an engine a wrong mechanism and measure when the search detects it.
+"""Controls with planted faults. A control gives an engine a wrong mechanism and measures when the search detects it.
 
-A mistake in an adapter has the same effect. A fault changes one number of all joints or force elements of a kind, or
-the inertias. The change of the inertias may depend on the description of the mechanism.
+A mistake in an adapter has the same effect. A fault changes one number of all joints or force elements of a kind, or it
+changes the inertias. The change of inertias may depend on the description of the mechanism.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from reports.search.subjects import Adapted
 
 Array = NDArray[np.float64]
 
-# The wrong field by fault. The name of a fault begins with a kind. The error of a point is relative to the length
-# scale, that of a field in FAULT_ANGLES is in radians, and other errors are relative to the value.
+# Fault -> the wrong field. The name of a fault begins with a kind. The error of a point is relative to the length
+# scale. Errors of fields in FAULT_ANGLES are in radians, and other errors are relative to the value.
 FAULT_FIELDS = {
     "pin": "second_point",
     "slot": "line_angle",
@@ -61,7 +61,7 @@ CLOSING_STEPS = 6  # Newton steps that close the joints of a wrong mechanism
 class Misbuilt(Mechanism):
     """A mechanism with a fault; reactions are computed for the mechanism `right`.
 
-    If the joints can't all be closed with the fault, their gaps are minimal.
+    If the fault prevents that all joints are closed, their gaps are minimal.
     """
 
     right: Mechanism = field(kw_only=True)
@@ -87,7 +87,7 @@ class Misbuilt(Mechanism):
 
 @dataclass(frozen=True)
 class PlantedFault:
-    """A change of a mechanism by one of PLANTED_FAULTS; `relative`: the size of the error."""
+    """A change of a mechanism by a fault in PLANTED_FAULTS. `relative`: size of the error."""
 
     fault: str
     relative: float
@@ -102,7 +102,7 @@ class PlantedFault:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of joints and forces in the mechanisms to be drawn."""
+        """The kinds of joints and forces of the random mechanisms."""
         return ("pin",) if self.kind not in ALL_KINDS else tuple(dict.fromkeys(("pin", self.kind)))
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
@@ -155,7 +155,7 @@ def kind_of(part: Any) -> str:
 
 
 PLANTED_FAULTS = ("inertia", *FAULT_FIELDS, *relations.RELATIONS)
-# The most accurate variants of each engine, for the checks of instants and of motions.
+# The most accurate variants of each engine for the checks of instants and motions.
 CONTROL_ENGINES: Mapping[str, tuple[Engine, ...]] = {
     "pymunk": (pymunk.LEAPFROG, pymunk.EXTENDED),
     "mujoco": (mujoco.TUNED, mujoco.EXTENDED),
@@ -174,7 +174,8 @@ FAULT_SIZES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
 @dataclass(frozen=True)
 class PlantedControl(Task):
-    """The task of finding the smallest size of a fault that the search detects, and the first case that shows it."""
+    """A task that determines the smallest size of a fault that the search detects, and the first case that detects
+    it."""
 
     name: str  # name of the engine
     fault: str
@@ -194,7 +195,8 @@ class PlantedControl(Task):
         return CONTROL_ENGINES[self.name][0]
 
     def run(self) -> Values:
-        """The size of the fault, and the number and the check of the first case that detects it; NaN if there is none.
+        """The size of the fault, and the number and the check of the first case that detects it. Numbers are NaN
+        without such a case.
 
         "built": whether the engine supports the kind. "asked": number of judged cases.
         """
@@ -215,8 +217,9 @@ class PlantedControl(Task):
 
 
 def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: int) -> Iterator[tuple[int, bool, str]]:
-    """Yield (case, whether it was judged, the check that fails only with the fault) up to the first such check."""
-    # An engine that compiles each shape is checked at instants only, which saves time.
+    """Yield (case, whether it was judged, check that fails only with the fault or ""), until such a check has
+    failed."""
+    # To save time, an engine that compiles each shape is checked at instants only.
     of_motion = ("instant",) if any(engine.build_time for engine in engines) else ("instant", "motions")
     oracles = ("relations",) if change.is_relation else of_motion
     for number, engine in product(range(cases), engines):

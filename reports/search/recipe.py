@@ -1,7 +1,7 @@
 """The mechanism of a recipe (`reports.search.parts`).
 
-Bodies are placed first. Each joint is placed at a point of the world, from which the points on its bodies follow. So
-every joint is closed at the start, and no loop has to be solved. The recipe's velocities are projected onto the joints.
+Bodies are placed first. Each joint is placed at a point of the world, and the points on the bodies are computed from
+it. So every joint is closed at the start. The velocities of the recipe are projected so that they satisfy the joints.
 """
 
 from __future__ import annotations
@@ -40,11 +40,12 @@ from reports.search.parts import (
 
 Array = NDArray[np.float64]
 Point = tuple[Decimal, Decimal]
-# Smallest ratio of the singular values of the rows. With a smaller ratio, rounding would change the forces and the
-# motion in every engine.
+# Limit of the ratio of the smallest to the largest singular value of the rows. Below it, rounding changes the forces
+# and the motion in every engine.
 DEPENDENCE_LIMIT = 1e-3
 SINGULAR_LIMIT = 1e-6  # The limit in mechanisms with toggles or folds.
-MOTION_ROUNDING = 1e-12  # Relative to the recipe's velocities: smaller projected velocities are rounding errors.
+# Projected velocities that are smaller, relative to the recipe's velocities, are rounding errors.
+MOTION_ROUNDING = 1e-12
 
 
 def build(recipe: Recipe) -> Mechanism:
@@ -60,7 +61,7 @@ def build(recipe: Recipe) -> Mechanism:
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A joint and its rows (rows, 3 bodies) at the start."""
+    """A joint with its rows (rows, 3 bodies) at the start."""
 
     joint: Joint
     rows: Array
@@ -73,7 +74,7 @@ class Standing:
         self._recipe = recipe
         self._length, mass, self._time = (Decimal(1).scaleb(decade) for decade in recipe.decades)
         self.bodies: list[Body] = []
-        self._places, self._sizes = [(Decimal(0), Decimal(0))], [Decimal(0)]  # index 0: the ground
+        self._places, self._sizes = [(Decimal(0), Decimal(0))], [Decimal(0)]  # index 0 is the ground
         for index, part in enumerate(recipe.parts, start=1):
             if not 0 <= part.parent < index:
                 raise InvalidMechanism(
@@ -154,7 +155,7 @@ class Standing:
         return Rod(f"{link.kind} {number}", *self._ends(link), first_point, second_point, length)
 
     def _force(self, link: RecipeLink, number: int) -> ForceElement:
-        """The force element of a link; its strength is relative to the second body's mass, inertia and size."""
+        """The force element of a link. Its strength is in units of the second body's mass, inertia and size."""
         self._check(link, number)
         body, name, ends = self.bodies[link.second - 1], f"{link.kind} {number}", self._ends(link)
         strength, rate = float(ladder(link.strength)), 1 / float(self._time)
@@ -187,7 +188,7 @@ class Standing:
         return _beside(self._places[link.second], link.at, self._sizes[link.second])
 
     def _points(self, link: RecipeLink) -> tuple[Vector, Vector]:
-        """The link's position [m] in the frames of both bodies."""
+        """The link's position [m] in the frame of each body."""
         at = self._at(link)
         return self._local(link.first, at), self._local(link.second, at)
 
@@ -199,7 +200,7 @@ class Standing:
         return x + along * math.cos(line), y + along * math.sin(line)
 
     def _moved(self, body: int, place: Point, x: float, y: float) -> Vector:
-        """The position `place` + (x, y) [m] of the world in a body's frame."""
+        """The coordinates [m] in a body's frame of the point `place` + (x, y) of the world."""
         local_x, local_y = self._local(body, place)
         more_x, more_y = components(-self._angle(body), x, y)
         return local_x + more_x, local_y + more_y
@@ -211,7 +212,7 @@ class Standing:
         return self.bodies[body - 1].pose[2] if body else 0.0
 
     def _local(self, body: int, point: Point) -> Vector:
-        """A position of the world in a body's frame [m]."""
+        """The coordinates [m] in a body's frame of a point of the world."""
         x, y = (float(point[axis] - self._places[body][axis]) for axis in (0, 1))
         return tuple(components(-self._angle(body), x, y))
 
@@ -228,7 +229,7 @@ class Standing:
         return Held(joint, rows)
 
     def mechanism(self, held: Sequence[Held], forces: Sequence[tuple[RecipeLink, int]] = ()) -> Mechanism:
-        """The mechanism with these joints and forces; its velocities satisfy the joints."""
+        """The mechanism with these joints and forces, and with velocities that satisfy the joints."""
         joints = tuple(closed.joint for closed in held)
         twists = self.allowed(held).tolist()
         bodies = tuple(replace(body, twist=tuple(twist)) for body, twist in zip(self.bodies, twists, strict=True))
@@ -249,13 +250,14 @@ class Standing:
         return dependence(scaled) >= least
 
     def _scaled(self, held: Sequence[Held]) -> tuple[Array, Array, Array]:
-        """The scaled rows, their norms (rows, 1), and the scales of the coordinates: 1 or the length scale [m]."""
+        """The scaled rows, their norms (rows, 1), and the scales of the coordinates, which are 1 or the length scale
+        [m]."""
         turn = np.tile([1.0, 1.0, length_scale(self.bodies, [closed.joint for closed in held])], len(self.bodies))
         scaled = np.vstack([closed.rows for closed in held]) / turn
         return scaled, np.linalg.norm(scaled, axis=1, keepdims=True), turn
 
     def allowed(self, held: Sequence[Held]) -> Array:
-        """The velocities (bodies, 3) that satisfy every joint and are nearest to those of the recipe."""
+        """The velocities (bodies, 3) that satisfy all joints and are nearest to the recipe's velocities."""
         wanted = np.array([part.velocity for part in self._recipe.parts], dtype=float) * float(RATE_UNIT / self._time)
         wanted[:, :2] *= float(self._length)
         if not self.independent(held):
@@ -284,7 +286,7 @@ def _beside(place: Point, tenths: tuple[int, int], size: Decimal) -> Point:
 
 
 def _touching(rim: Rim, unit: Decimal, point: Vector, tangent: float) -> tuple[Curve, float]:
-    """The curve through `point` with the direction `tangent` [rad] in its body's frame, and its arc there [m]."""
+    """A curve through `point` with the direction `tangent` [rad] in the body's frame, and the arc at this point [m]."""
     size = float(ladder(rim.size) * unit)
     match rim.shape:
         case "line":

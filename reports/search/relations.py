@@ -36,9 +36,10 @@ State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, i
 
 # Methods that combine runs amplify rounding up to a hundred times. Very stiff constraints lose half of the digits.
 DESCRIPTION_TOLERANCE = 1e-7
-LOW_PRECISION_ROUNDINGS = 1e4  # Tolerance in roundings of the engine, since a displacement is a small difference.
-POSITION_ROUNDING = 1e-6  # Relative to the position: rounding of the position affects smaller displacements.
-MAX_NOISE = 0.1  # Relative to the motion: with more noise the check detects nothing.
+# Tolerance in units of the engine's precision. It is large, since a displacement is a small difference.
+LOW_PRECISION_ROUNDINGS = 1e4
+POSITION_ROUNDING = 1e-6  # Smaller displacements, relative to the position, are affected by its rounding.
+MAX_NOISE = 0.1  # If the noise relative to the motion is larger, the check detects nothing.
 ESTIMATE_MARGIN = 10.0  # An error above ESTIMATE_MARGIN times the error estimate contradicts the estimate.
 TOO_LONG = CheckSkipped("something turns by more than a radian in a step, so rounding errors grow without a bound")
 
@@ -49,20 +50,20 @@ CHANGES: dict[str, Change] = {
     "renamed": relabelled,
     "swapped": joints_swapped,
 }
-# Powers of ten (length, mass) by which the units change.
+# Powers of ten by which the units of length and mass change.
 UNIT_CHANGES = {"in other lengths": (-3, 0), "in other masses": (0, 2)}
 RELATIONS = (*CHANGES, *UNIT_CHANGES)
 
 
 def relation_errors(engine: Engine, recipe: Recipe, number: int) -> Errors | CheckSkipped:
-    """(error, tolerance) of the motion in another description, relative to the motion."""
+    """(error, tolerance) of the motion in another description, both relative to the motion."""
     mechanism = build(recipe)
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return CheckSkipped("rounding decides whether two shapes touch")
     if _turns_too_far(mechanism, mechanism.pose, mechanism.twist):
         return TOO_LONG
     name = RELATIONS[number % len(RELATIONS)]
-    # MuJoCo's impedance grows over a millimetre, and pymunk's slop is a decimetre.
+    # The default settings of MuJoCo and pymunk contain the lengths 1 mm and 0.1 m.
     if name in UNIT_CHANGES and engine.variant == "default":
         return CheckSkipped("the default settings contain lengths")
     described = describe_otherwise(recipe, mechanism, name)
@@ -106,7 +107,7 @@ def _compare_runs(
     back: Callable[[Trajectory], State],
     stricter: Engine | None = None,
 ) -> tuple[float, float] | CheckSkipped:
-    """(error, tolerance) of the last states; `reports.search.law` defines the noise in the tolerance."""
+    """(error, tolerance) of the last states. `reports.search.law` defines the noise in the tolerance."""
 
     def run(described: Mechanism) -> Trajectory:
         return engine.build(described, INSTANT_STEP * described.time_scale)(1, INSTANT_STEPS)
@@ -120,10 +121,10 @@ def _compare_runs(
     floor = max(DESCRIPTION_TOLERANCE, LOW_PRECISION_ROUNDINGS * engine.precision)
 
     def state_difference(state: State, other: State, of: Mechanism) -> float:
-        # Rounding of a position is relative to its distance from the origin. Rounding of a velocity is the same error
-        # divided by the step.
+        # The rounding error of a position is relative to the distance from the origin. That of a velocity is the
+        # position's error divided by the step.
         least = POSITION_ROUNDING * max(distance, float(np.abs(of.pose[:, :2]).max()))
-        if any(isinstance(joint, Weld) for joint in of.joints):  # the engine closes an error of the weld's angle
+        if any(isinstance(joint, Weld) for joint in of.joints):  # the engine corrects the error of a weld's angle
             least += NOISE_MARGIN * engine.angle_error * of.length_scale / floor
         least_scale = np.array([[least, 0.0, 0.0]])
         moved, least_speed = other[0] - of.pose, least_scale * INSTANT_STEPS / duration

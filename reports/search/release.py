@@ -1,6 +1,7 @@
-"""Checks of MuJoCo's accelerations, by the installed release or by another release in a separate process.
+"""Checks of MuJoCo's accelerations in the installed release, or in another release by a separate process.
 
-As a program, the module reads models as lines of JSON. It writes a line of JSON for each: the answer or the exception.
+As a program, the module reads models as lines of JSON. It writes a line of JSON with the answer or the exception for
+each model.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -29,10 +30,10 @@ CURVED, BESIDE_CURVED = "acceleration, a known fault", "beside the known fault"
 
 
 def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
-    """Relative "errors" by check, the accelerations "found" and "expected", and the "version".
+    """The values are relative "errors" by check, the accelerations "found" and "expected", and the "version".
 
-    The error BESIDE_CURVED is the smaller of the errors with and without the velocity term of curved equalities.
-    `version`: a release such as "3.6.0"; empty for the installed one. Raises Fault if the other release raises or
+    The error BESIDE_CURVED is the smaller error of two, with and without the velocity term of curved equalities.
+    `version`: a release such as "3.6.0", or "" for the installed release. Raises Fault if the other release raises or
     crashes.
     """
     if version:
@@ -86,7 +87,7 @@ def _give_and_found(model: RawModel, law: StartEquations) -> tuple[NDArray[np.fl
 
 @cache
 def process_of(version: str) -> subprocess.Popen[str]:
-    """The process of a release, which is started once. Raises BadInput if the release can't be installed."""
+    """The process of a release; it is started once. Raises BadInput if the release can't be installed."""
     return subprocess.Popen(
         [sys.executable, "-m", "reports.search.release"],
         stdin=subprocess.PIPE,
@@ -118,7 +119,7 @@ def _check_in_other_release(version: str, model: str) -> dict[str, Any]:
 
 
 def release_of(name: str) -> str | None:
-    """The release in the name of a subject, empty for the installed one; None unless the subject is MuJoCo alone."""
+    """The release in the name of a subject, "" for the installed release; None unless the subject is MuJoCo alone."""
     name_parts = name.split()
     return " ".join(name_parts[2:]) if name_parts[:2] == ["mujoco", "alone"] else None
 

@@ -1,4 +1,4 @@
-"""A search: cases are drawn, run by workers and stored; findings are reduced."""
+"""A search draws cases, which workers run and store, and reduces findings."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ PLANTED_LIMIT = 1800.0  # CPU time of a control with a planted fault [s].
 WAVE_CHUNKS = 4  # Chunks for each worker between two checks of the time limit.
 DEFAULT_CASES = 200
 
-# (store, tasks, limit, label, number of cases of a task) -> the tasks that are not stored, done(answer, count), watch
+# Function of (store, tasks, limit, label, number of cases of a task) that returns a context of (tasks that are not
+# stored, done(answer, count), watch).
 Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..., None], Any]]]
 
 
@@ -57,10 +58,10 @@ def run_search(
     seconds: float | None = None,
     workers: int | None = None,
 ) -> tuple[list[CaseResult], Mapping[Shrink, Answer]]:
-    """Results of `cases` cases of each subject, and reduced findings; both are stored in `folder`.
+    """Results of `cases` cases of each subject, and reduced findings. Both are stored in `folder`.
 
-    `seed`: None means the first published seed. `kinds`: empty means all kinds. `seconds`: time limit, after which no
-    task is started.
+    `seed`: None selects the first published seed. `kinds`: an empty sequence selects all kinds. `seconds`: time limit,
+    after which no task is started.
     """
     kinds = kinds or tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
     chunks = make_chunks(subjects, plan.published_seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)
@@ -72,7 +73,7 @@ def run_search(
 
 @dataclass
 class Search:
-    """A search into a store; `seconds`: time limit, after which no task is started."""
+    """A search that stores its results. `seconds`: time limit, after which no task is started."""
 
     store: Store
     crew: Workforce
@@ -94,7 +95,8 @@ class Search:
         """Run the missing chunks until the time limit; return all results of the started batches."""
         chunks: list[Chunk] = []
         for batch in batches:
-            if not chunks:  # the time for drawing the first batch does not count: it finds the supported kinds
+            # the time for drawing the first batch does not count, since it includes the search for supported kinds
+            if not chunks:
                 self.begin = monotonic()
             if self.over:
                 break
@@ -125,7 +127,7 @@ class Search:
         run_into(self.store, tasks, False, limit, self.crew.threads, done, watch, supervised=self.crew.supervise)
 
     def _count(self, answer: Answer, single: int) -> int:
-        """The number of cases in an answer; `single`: that number for a single case that did not finish."""
+        """The number of cases in an answer. `single`: the number if a single case did not finish."""
         results = json.loads(str(answer.values["results"])) if answer.finished else []
         count = len(results) or single
         self.cases += count
@@ -144,7 +146,7 @@ class Search:
             self._run_tasks(waiting, PLANTED_LIMIT, done, watch)
 
     def shrink(self, results: Iterable[CaseResult]) -> Mapping[Shrink, Answer]:
-        """Reduce some findings of each check. The time limit of the search applies to the reduction again."""
+        """Reduce some findings of each check. The reduction has the same time limit as the search."""
         tasks = [Shrink.of(check, case) for check, case in choose_worst(results)]
         if not tasks:
             return {}

@@ -1,4 +1,4 @@
-"""Scripts for the authors of pymunk, MuJoCo and MJX: each runs a case with the engine alone.
+"""Scripts for the authors of pymunk, MuJoCo and MJX. A script runs a case with the engine only.
 
 A script prints the engine's result, the expected result and their difference.
 """
@@ -53,7 +53,7 @@ step"""
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A function of a script that steps one model. `read`: a Python expression for the result."""
+    """A function in a script that steps one model. `read`: Python expression for the result."""
 
     title: str
     lines: Sequence[str]
@@ -66,7 +66,7 @@ class Block:
 
 
 def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
-    """The script of a case; empty for other engines, and if our code runs between the steps of the engine.
+    """The script of a case; empty for other engines, or if our code runs between the steps.
 
     `number`: number of the case, which selects the relation.
     """
@@ -88,7 +88,8 @@ def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
 
 
 def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list[tuple[str, Mechanism, float, int]]:
-    """(title, mechanism, step [s], number of steps): two descriptions for a relation, else two step sizes."""
+    """Two runs (title, mechanism, step [s], number of steps), with two descriptions for a relation, else with two
+    steps."""
     name = relations.RELATIONS[number % len(relations.RELATIONS)]
     if check in (*relations.RELATIONS, "relations"):
         changed = relations.describe_otherwise(recipe, mechanism, name)
@@ -100,7 +101,7 @@ def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list
 
 
 def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int) -> Block:
-    """Poses after a short motion. Raises Unsupported if our code runs between the steps."""
+    """A block with poses after a short motion. Raises Unsupported if our code runs between the steps."""
     title = f"{title}: {steps} steps of {dt:.6g} s"
     expected = TRUTH.build(mechanism, steps * dt)(1, 1).pose[-1]
     if engine.name != "pymunk":
@@ -153,7 +154,7 @@ def _of_accelerations(engine: Any, mechanism: Mechanism, check: str) -> str:
 
 
 def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
-    """Accelerations by one call of mj_forward; `other`: another release, or empty."""
+    """A script with accelerations by one call of mj_forward. `other`: another release, or ""."""
     rates, accelerations = mujoco_alone.start_equations(model).rates, check_accelerations(model, other)
     names = ", ".join(f"b{body} {coordinate}" for body, coordinate in mujoco_alone.coordinates(model))
     lines = [f"data.qvel[:] = {rates.tolist()!r}", "mujoco.mj_forward(model, data)"]
@@ -163,7 +164,7 @@ def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
 
 
 def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
-    """The script of these blocks. `engine`: None for MuJoCo alone; `turning`: lines that remove whole turns."""
+    """The script with these blocks. `engine`: None for MuJoCo alone. `turning`: lines that remove whole turns."""
     runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
     rows = "\n".join(
         f"    ({block.title!r}, run_{number}, {np.asarray(block.expected).tolist()!r}),"
@@ -215,7 +216,7 @@ def _model_lines(text: str) -> list[str]:
 
 
 def _pymunk_lines(model: Any, sweeps: int) -> list[str]:
-    """Lines that build a space. Raises Unsupported for objects that can't be written."""
+    """Lines of code that build a space. Raises Unsupported for objects that can't be written."""
     settings = f"space.gravity, space.iterations = {tuple(model.space.gravity)!r}, {sweeps}"
     return ["space = pymunk.Space()", settings, *object_lines(model.space, model.bodies)]
 

@@ -1,4 +1,4 @@
-"""Test-case reduction: removes bodies and joints and makes integers smaller while the check still fails."""
+"""Test-case reduction. Bodies and joints are removed and integers made smaller while the check still fails."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ from reports.search.subjects import OracleResult, Subject
 
 
 def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:
-    """The smallest case found within `seconds` of CPU time; `still`: whether a smaller case fails in the same way."""
+    """The smallest failing case that is found in `seconds` of CPU time. `still`: whether a smaller case fails in the
+    same way."""
     end = time.process_time() + seconds
     seen: set[Case] = {case}
     reduced = True
@@ -48,7 +49,7 @@ def _with_less(case: Any) -> Iterator[Any]:
 
 
 def _without_part(case: Any, removed: int) -> Any:
-    """A copy without a body and its joints; the children of the body get its parent."""
+    """A copy without a body and without the body's joints. Children of the body get the body's parent."""
     parent = case.parts[removed - 1].parent
 
     def renumbered(body: int) -> int:
@@ -89,13 +90,13 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
 
 
 SHRINK_TIME = 20.0  # CPU time for one finding [s].
-KEPT_SHARE = 0.01  # Smallest error relative to the original one; a smaller error may have another cause.
-FINDINGS_SHRUNK = 2  # Number of findings that are reduced, by check and subject.
+KEPT_SHARE = 0.01  # Smallest ratio of the error to the original error; a smaller error may have another cause.
+FINDINGS_SHRUNK = 2  # Number of findings of each check and subject that are reduced.
 
 
 @dataclass(frozen=True)
 class Shrink(Task):
-    """The task of reducing a case in which a check fails; `chunk` contains only this case."""
+    """A task that reduces a case in which a check fails. `chunk` contains only this case."""
 
     check: str
     chunk: Chunk
@@ -167,14 +168,13 @@ class Shrink(Task):
 
 
 def _kind_of(result: OracleResult) -> str:
-    """The message of a fault without numbers and names; a reduced case must have the same message."""
+    """The message of a fault without numbers and names. A reduced case must have the same message."""
     return re.sub(r"'[^']*'|[0-9.e+-]+", "", result.words)
 
 
 def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> list[tuple[str, CaseResult]]:
-    """(check, case): at most `most` cases by subject and check, those with the fewest kinds of joints.
-
-    Of the cases with the same kinds, only the first is considered.
+    """Pairs (check, case), at most `most` for each subject and check. Cases with few kinds of joints are preferred, and
+    each set of kinds has only its first case.
     """
     by_check: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
     for case in cases:
@@ -192,7 +192,7 @@ def line_of(answer: Answer) -> str:
 
 
 def files_of(task: Shrink, answer: Answer) -> dict[str, str]:
-    """The files of a reduced finding by name; none if the reduction did not finish."""
+    """The files of a reduced finding by name; empty if the reduction did not finish."""
     if not answer.finished:
         return {}
     stem = re.sub(r"\W+", "_", f"{task.subject.name} {task.check} {task.chunk.seed} {task.chunk.first}").strip("_")

@@ -1,4 +1,4 @@
-"""The subjects of a search: an engine with its adapter, or MuJoCo alone."""
+"""The subjects of a search, which are engines with adapters and MuJoCo alone."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ OUR_ERROR = "our own error"  # name of the check for an exception outside of the
 
 @dataclass(frozen=True)
 class OracleResult:
-    """The result of a case. `errors`: (error, tolerance) by check. `skipped`: reasons why oracles did not apply."""
+    """The result of a case. `errors`: check -> (error, tolerance). `skipped`: reasons why oracles did not apply."""
 
     errors: dict[str, tuple[float, float]]
     skipped: tuple[str, ...] = ()
@@ -32,7 +32,7 @@ class OracleResult:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """The checks that fail, the worst first."""
+        """The checks that fail; the worst check is first."""
         over = {
             name: error / bound if bound > 0 else np.inf
             for name, (error, bound) in self.errors.items()
@@ -69,7 +69,7 @@ class Adapted:
 class Alone:
     """MuJoCo without an adapter, on models in its own format (`mujoco_alone`).
 
-    `release`: a version such as "3.6.0"; empty for the installed one.
+    `release`: a version such as "3.6.0", or "" for the installed release.
     """
 
     release: str = ""
@@ -93,18 +93,18 @@ class Alone:
 
 
 Subject = Adapted | Alone
-# Cached, since all engines run the same mechanism and share its tables of rolling curves and the judge's motion.
+# Mechanisms are cached, so that all engines share the tables of rolling curves and the judge's motion.
 _cached_recipe = lru_cache(motions.CACHED_MECHANISMS)(mechanisms.recipe)
 _cached_mechanism = lru_cache(motions.CACHED_MECHANISMS)(build)
 
 
 def is_shaped(subject: Subject) -> bool:
-    """Whether the cases have few shapes, since the engine compiles a model for each shape."""
+    """Whether the engine compiles a model for each shape; its cases then have few shapes."""
     return isinstance(subject, Adapted) and subject.engine.build_time > 0
 
 
 def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], engine: Engine | None) -> OracleResult:
-    """Run oracles. An exception counts as "raised" if code of the engine raised it, else as OUR_ERROR.
+    """Run oracles. An exception is the fault "raised" if code of the engine raised it, else OUR_ERROR.
 
     `engine`: None for MuJoCo alone.
     """
@@ -140,7 +140,7 @@ def _passed_through(error: Exception, engine: Engine) -> bool:
     while isinstance(engine, EngineWrapper):
         engine = engine.engine
         modules.append(type(engine).__module__)
-    # An engine is a package, or a single module of the package `engines`.
+    # An engine is a package, or it is a single module of the package `engines`.
     owners = {module if module.count(".") < 2 else module.rpartition(".")[0] for module in modules}
     called = [frame.f_globals.get("__name__", "") for frame, _ in traceback.walk_tb(error.__traceback__)]
     return any(name == owner or name.startswith(f"{owner}.") for name in called for owner in owners)

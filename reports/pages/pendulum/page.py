@@ -74,7 +74,7 @@ def tip(ratio: float) -> LinkPendulum:
     return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
 
 
-# Extrapolated variants are run at the largest step only, since they already fail there.
+# Extrapolated variants are run at the largest step only, since they fail at each step.
 PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
     PointPendulum(), (pymunk.EXTENDED, mujoco.EXTENDED), (10,)
 )
