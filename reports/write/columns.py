@@ -1,7 +1,7 @@
 """Tables that compare engines in all scenes: at equal CPU time, at equal error and at equal step.
 
-A method's column in a scene depends on what enforces the joints: methods with documented settings are those whose
-engine enforces every joint.
+The column of a method in a scene depends on what enforces the joints. In methods with documented settings, the engine
+enforces every joint.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Column(StrEnum):
     SETTINGS = "documented settings"
     CODE = "with our code"
     NAIVE = "naive"
-    WHOLE = ""  # methods of an engine without variants of COLUMN_OF_VARIANT
+    WHOLE = ""  # for engines without a variant in COLUMN_OF_VARIANT
 
 
 COLUMN_OF_VARIANT = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}
@@ -59,7 +59,7 @@ def column_of(scene: Scene, engine: Engine) -> Column:
 
 
 def displayed_variant(scene: Scene, engine: Engine) -> str:
-    """The variant's name on pages. For a naive method, "naive" replaces "default" or precedes the name."""
+    """The name of a variant on pages. For a naive method, "naive" replaces "default" or precedes the name."""
     if engine.variant not in COLUMN_OF_VARIANT or column_of(scene, engine) is not Column.NAIVE:
         return engine.variant
     return str(Column.NAIVE) if engine.variant == "default" else f"{Column.NAIVE}, {engine.variant}"
@@ -70,9 +70,8 @@ def with_displayed_variants(rows: Mapping[Cell, Measurement]) -> dict[Cell, Meas
 
 
 def describe_enforcement(engine: Engine, mechanism: Mechanism) -> str:
-    """What enforces the joints: 'engine', or 'engine; skate: our code' if joints differ.
-
-    Joints have the names of their kinds, or their own names if joints of one kind differ.
+    """What enforces the joints, such as 'engine', or 'engine; skate: our code' if joints differ. A joint is named by
+    its kind, or by its name if joints of its kind differ.
     """
     joints: list[tuple[str, str, Enforcement]] = [
         (type(joint).__name__.lower(), joint.name, engine.enforcement(joint, mechanism)) for joint in mechanism.joints
@@ -99,7 +98,7 @@ def _describe_enforcement_in(scene: Scene, engine: Engine) -> str:
 
 
 def enforcement_by_method(cells: Iterable[Cell]) -> dict[str, str]:
-    """What enforces the joints, by method. If cells of a method differ, their descriptions are joined by " or "."""
+    """Method -> what enforces the joints. If cells of a method differ, their descriptions are joined by " or "."""
     by_method: dict[str, dict[str, None]] = {}
     for cell in cells:
         method = f"{cell.engine.name} {displayed_variant(cell.scene, cell.engine)}"
@@ -115,14 +114,14 @@ SMALLER_STEP_FAILS = "a smaller step fails"
 
 
 def describe_inner_runs(engine: Engine, scene: Scene, step: float) -> str:
-    """The number of inner runs and their smallest step, such as '5 runs, finest 0.125 ms'; empty for a single run."""
+    """The number of inner runs with their smallest step, such as '5 runs, finest 0.125 ms'; empty for a single run."""
     steps = engine.inner_steps(mechanism_of(scene))
     return f"{len(steps)} runs, finest {number(1e3 * step * min(steps), 3)} ms" if len(steps) > 1 else ""
 
 
 @dataclass(frozen=True)
 class EngineLine:
-    """The methods of an engine and their rows in one scene, by column. A column is missing if it has no method."""
+    """The methods of an engine in one scene with their rows, by column. A column without methods is missing."""
 
     page: Page
     scene: Scene
@@ -134,14 +133,13 @@ class EngineLine:
         return self.page.quantity
 
 
-PageRows = tuple[Page, Sequence[Measurement]]  # a page, and the rows of its scenes that are compared
+PageRows = tuple[Page, Sequence[Measurement]]  # a page, and the compared rows of its scenes
 
 
 def engine_lines(entries: Iterable[PageRows]) -> list[EngineLine]:
     """A line for each scene and engine with rows.
 
-    If the variant "tuned" needs our code in a scene, the column SETTINGS has the page's other methods with documented
-    settings.
+    If the variant "tuned" needs our code in a scene, the column SETTINGS has other methods with documented settings.
     """
     return [
         _engine_line(page, scene, engine, [row for row in rows if row.scene == scene.name])
@@ -174,7 +172,7 @@ FormatCell = Callable[[EngineLine, Column], str]
 
 
 def absence_reason(line: EngineLine, column: Column) -> str:
-    """NO_JOINT, NOT_BUILT, or "" if a method of the column builds the mechanism or none was run."""
+    """NO_JOINT or NOT_BUILT; "" if a method of the column builds the mechanism or if no method was run."""
     if column not in line.columns:
         return NO_JOINT
     rows = [row for _, of_method in line.columns[column] for row in of_method]
@@ -193,7 +191,7 @@ def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> s
 
 
 def remarks_of(line: EngineLine, column: Column) -> str:
-    """The end of a cell's text, with ', contact' if a contact replaces a joint, and the names of unusual variants."""
+    """The remarks in a cell: ', contact' if a contact replaces a joint, and the names of unusual variants."""
     joints = mechanism_of(line.scene).joints
     by_contact = any(engine.uses_contacts for engine, _ in line.columns[column])
     by_contact &= column in (Column.SHIPPED, Column.SETTINGS)
@@ -208,7 +206,7 @@ def _table(
     format_rows: FormatCell,
     remarks: Mapping[tuple[str, Column], str] = MappingProxyType({}),
 ) -> str:
-    """A Markdown table with a line for each scene and a column for each engine and kind; `remarks` end the headers."""
+    """A Markdown table with a line for each scene and a column for each engine and kind. `remarks`: ends of headers."""
     engines = dict.fromkeys(line.engine for line in lines)
     present = {(line.engine, column) for line in lines for column in line.columns}
     heads = [(engine, column) for engine in engines for column in Column if (engine, column) in present]
@@ -246,7 +244,8 @@ def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
 
 
 def error_by_cost(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[float, float]]:
-    """(CPU time [s/s], `error_within` it) for the first, the last, and each CPU time at which the error falls."""
+    """Pairs (CPU time [s/s], error within it) for the first and the last CPU time, and for each at which the error
+    falls."""
     methods = list(methods)
     costs = sorted({row.cpu for rows in methods for row in rows if row.cpu > 0})
     pairs = [(cost, min(error_within(rows, name, cost) for rows in methods)) for cost in costs]
@@ -265,7 +264,7 @@ def equal_cost(entries: Iterable[PageRows]) -> str:
 
 
 def within_budget(line: EngineLine, column: Column) -> str:
-    """The least error of a column within CPU_BUDGET, or the reason why no error counts."""
+    """The least error of a column within CPU_BUDGET, or the reason why there is no such error."""
     methods = [rows for _, rows in line.columns[column]]
     least = min((error_within(rows, line.quantity, ACCEPTED_CPU) for rows in methods), default=math.inf)
     if math.isfinite(least):
@@ -276,7 +275,7 @@ def within_budget(line: EngineLine, column: Column) -> str:
 
 
 def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
-    """The table of each engine: the least CPU time [ms/s] for an error below each of TARGETS."""
+    """A table for each engine with the least CPU times [ms/s] for errors below TARGETS."""
 
     def least_costs(line: EngineLine, column: Column) -> str:
         costs = [
@@ -292,9 +291,9 @@ def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
 
 
 def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS) -> dict[str, str]:
-    """The table of each engine with the errors at `steps` (name -> step [s]) and the effect of smaller steps.
+    """A table for each engine with errors at `steps` (name -> step [s]) and the effect of smaller steps.
 
-    The header has the number of a method's inner runs, unless scenes have different numbers.
+    The header of a method has its number of inner runs, unless the number depends on the scene.
     """
     last, lines = list(steps.values())[-1], engine_lines(entries)
     runs: dict[tuple[str, Column], set[str]] = {}
@@ -304,7 +303,7 @@ def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_S
     same_runs = {key: next(iter(descriptions)) for key, descriptions in runs.items() if len(descriptions) == 1}
 
     def errors_at_steps(line: EngineLine, column: Column) -> str:
-        engine, rows = line.columns[column][-1]  # the last method of a column has the most of our code
+        engine, rows = line.columns[column][-1]  # in the last method of a column, our code does most
         in_cell = "" if (line.engine, column) in same_runs else describe_inner_runs(engine, line.scene, last)
         return "; ".join(filter(None, (_errors_at_steps(line, engine, rows, steps), in_cell)))
 
@@ -313,7 +312,7 @@ def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_S
 
 
 def _errors_at_steps(line: EngineLine, engine: Engine, rows: Sequence[Measurement], steps: Mapping[str, float]) -> str:
-    """A text such as '0.044, 0.01; plateau 0.011'; the outcomes if no run can be compared."""
+    """A text such as '0.044, 0.01; plateau 0.011', or the outcomes if no run can be compared."""
     if not any(Outcome(row.outcome).comparable for row in rows):
         return ", ".join(dict.fromkeys(row.outcome for row in rows))
     wanted = [step for name, step in steps.items() if is_run_at(name, engine.name, engine.variant)]

@@ -1,4 +1,4 @@
-"""The CSV files of a report: errors, timings, descriptions of rows, digests of files; and the rows that are published.
+"""The CSV files of a report (errors, timings, descriptions of rows, digests of files), and the published rows.
 
 A number that agrees with the published number within rounding keeps its published text, so that a diff shows only real
 changes. Pages are rendered from the numbers in the CSV files.
@@ -33,7 +33,7 @@ def as_csv(
 
     Args:
         header: each line becomes a comment.
-        made_with: the versions on which a row depends, by the row's key; the last column has their digests.
+        made_with: key of a row -> versions on which it depends. The last column has their digests.
     """
     results = [f.name for f in fields(Measurement) if f.name not in (*IDENTITY_COLUMNS, *TIMINGS, "key", "limit")]
     names = [*IDENTITY_COLUMNS, *(TIMINGS if timings else results)]
@@ -57,12 +57,12 @@ def cell_text(row: Measurement, name: str) -> str:
 
 
 def no_formula(text: str) -> str:
-    """The text, with an apostrophe in front if a spreadsheet would interpret it as a formula."""
+    """The text; it begins with an apostrophe if a spreadsheet would interpret the text as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
 def read_lines(text: str) -> tuple[list[str], list[dict[str, str]]]:
-    """(comments, rows as dictionaries) of a CSV text."""
+    """The comments of a CSV text, and its rows as dictionaries."""
     lines = text.splitlines()
     comments = [line.removeprefix("# ") for line in lines if line.startswith("#")]
     return comments, list(csv.DictReader(line for line in lines if not line.startswith("#")))
@@ -73,7 +73,7 @@ DESCRIPTION_COLUMNS = ("parameters", "settings")
 
 
 def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] | None = None) -> str:
-    """The texts of all digests in the files of rows."""
+    """A CSV with the text of each digest in the files of rows."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(["digest", "of", "description"])
@@ -87,7 +87,7 @@ DIGESTS = "digests.csv"
 
 
 def digests_csv(files: Mapping[str, str]) -> str:
-    """The digests of the tables and pages of a report.
+    """A CSV with the digests of a report's tables and pages.
 
     Pictures are left out, because no number is read from a picture. Timings are left out, because a folder may contain
     timings of an earlier run.
@@ -97,7 +97,7 @@ def digests_csv(files: Mapping[str, str]) -> str:
 
 
 def not_as_written(folder: Path) -> tuple[str, ...] | None:
-    """The tables and pages of a folder that differ from DIGESTS; None without a file of digests."""
+    """The tables and pages of a folder that differ from their digests; None without a file of digests."""
     try:
         lines = (folder / DIGESTS).read_text(encoding="utf-8").splitlines()[1:]
     except (OSError, UnicodeDecodeError):
@@ -114,14 +114,14 @@ def _digest_of(path: Path) -> str:
 
 
 ERROR_COLUMNS = (*(quantity.name for quantity in QUANTITIES), *OF)
-# Factors within which times agree on one machine. In two successive full runs, 95 % of the rows agreed within 1.17
-# (cpu, the least of several runs) and 1.74 (build, which is measured once).
+# Factors within which times on one machine count as equal. In two full runs, 95 % of the rows agreed within the factor
+# 1.17 for "cpu", which is the least of several times, and 1.74 for "build", which is measured once.
 TIMING_NOISE = {"cpu": 1.2, "build": 1.8}
 
 
 @dataclass(frozen=True)
 class Published:
-    """The texts of errors.csv and timings.csv by IDENTITY_COLUMNS and by column; empty without files."""
+    """Texts of errors.csv and timings.csv. `rows`: values of IDENTITY_COLUMNS -> column -> text."""
 
     rows: Mapping[tuple[str, ...], Mapping[str, str]] = field(default_factory=dict)
     machine: str = ""
@@ -132,7 +132,7 @@ class Published:
 
 
 def read_published(folder: Path) -> Published:
-    """The published rows of a folder. Raises BadInput for files without a column of a report."""
+    """The published rows of a folder. Raises BadInput if a file lacks a column."""
     rows: dict[tuple[str, ...], dict[str, str]] = {}
     comments: list[str] = []
     for name in ("errors.csv", "timings.csv"):
@@ -149,7 +149,7 @@ def read_published(folder: Path) -> Published:
 
 
 def as_published(rows: Mapping[Cell, Measurement], before: Published) -> dict[Cell, Measurement]:
-    """The rows with their numbers as the files print them; see `with_published_numbers`."""
+    """The rows with the numbers that the files will contain, from `with_published_numbers`."""
     same_machine = before.machine == machine()
     published: dict[Cell, Measurement] = {}
     for cell, row in rows.items():
@@ -163,7 +163,7 @@ def as_published(rows: Mapping[Cell, Measurement], before: Published) -> dict[Ce
 def with_published_numbers(
     row: Measurement, before: Mapping[str, str], same_machine: bool, amplified: float = 1.0
 ) -> Measurement:
-    """The row with published numbers in place of those that agree within rounding or timing noise.
+    """The row with published numbers, if they agree with its numbers within rounding or timing noise.
 
     Args:
         before: the published texts by column; they are ignored if the outcome differs.

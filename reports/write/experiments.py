@@ -1,4 +1,4 @@
-"""The rendering of experiments, and observations on motions."""
+"""Rendering of experiments, and observations on motions."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from reports.write.templates import template
 class RenderedExperiment:
     """The texts and tables of an experiment.
 
-    observations, grid: Markdown tables; empty without observations or rows.
-    unrun: whether the experiment has cells or tasks, but none was run.
+    observations, grid: Markdown tables, which are empty without observations or rows.
+    unrun: whether no cell and no task of the experiment was run, although it has some.
     """
 
     title: str
@@ -59,7 +59,7 @@ def render_experiment(failure: Failure, material: Material) -> RenderedExperimen
 
 
 def without_incomparable_errors(cell: Cell, row: Measurement) -> Measurement:
-    """The row; if only the sample at t = 0 can be compared, the errors that need the reference motion are NaN."""
+    """The row. If only the sample at t = 0 can be compared, the errors by the reference motion become NaN."""
     if cell.scene.comparable_until >= cell.scene.duration / cell.sample_count:
         return row
     return replace(row, **{quantity.name: math.nan for quantity in QUANTITIES if quantity.needs_truth})
@@ -68,9 +68,8 @@ def without_incomparable_errors(cell: Cell, row: Measurement) -> Measurement:
 def observe(
     material: Material, cell: Cell, setting: str, describe: Callable[[Trajectory], str]
 ) -> tuple[Observation, ...]:
-    """The observation on one motion; none if it was not run or if the engine does not build the mechanism.
-
-    `describe` is called with a finite motion only. For other motions, the outcome is observed.
+    """The observation on one motion; empty if it was not run or if the engine does not build the mechanism. `describe`
+    is called only with a finite motion. The observation on any other motion is its outcome.
     """
     answer = material.answers.get(Motion(cell))
     if answer is None or answer.outcome == Outcome.UNSUPPORTED:
@@ -88,7 +87,7 @@ def observe(
 def observe_each(
     material: Material, cells: Iterable[Cell], describe: Callable[[Cell, Trajectory], str]
 ) -> list[Observation]:
-    """The observations on the motions of cells; their setting is the step."""
+    """The observations on the motions of cells. The setting of an observation is the step."""
     return [
         line
         for cell in cells

@@ -16,12 +16,12 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
 from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words, sweep_words
 
-# Step [s] at which methods are compared. A grid without this step has its nearest step instead.
+# Step [s] at which methods are compared. Otherwise the nearest step of the grid is used.
 COMPARED_STEP = 1e-3
-# Error bounds in the unit of the page's quantity; a setting is recommended for each bound.
+# Error bounds in the unit of the page's quantity. A setting is recommended for each bound.
 TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
 # Costs within this factor count as equal, since timings of short runs scatter by about a fifth. Among methods of equal
-# cost, the first of the page is recommended: a page lists settings of the engine before methods with our code.
+# cost, the first method of the page is recommended. A page lists methods with our code last.
 EQUAL_COST_FACTOR = 1.25
 
 # (method, step [s]) -> the error that the method's declared regularisation causes, or NaN for an unknown error.
@@ -33,7 +33,7 @@ def undeclared(method: str, step: float) -> float:
 
 
 def compared_step(rows: Iterable[Measurement]) -> float:
-    """The step [s] of the sweep that is nearest to COMPARED_STEP, by ratio; NaN without rows."""
+    """The step [s] of the sweep whose ratio to COMPARED_STEP is nearest to 1; NaN without rows."""
     steps = {row.step for row in rows if row.purpose == "sweep"}
     return min(steps, key=lambda step: abs(math.log(step / COMPARED_STEP)), default=math.nan)
 
@@ -45,13 +45,13 @@ def scene_table(
     declared: DeclaredError = undeclared,
     inner_runs: Mapping[str, str] = MappingProxyType({}),
 ) -> str:
-    """A Markdown table of the methods in one scene: errors and cost at `compared_step`, and convergence.
+    """A Markdown table of the methods in one scene, with errors and cost at `compared_step` and convergence.
 
     Args:
-        name: the quantity of the page. Errors of the joints follow it, if a row has them.
-        enforcement: what enforces the joints, by method.
-        declared: positive errors have a column. A plateau that is larger than the declared error is marked.
-        inner_runs: a description of the inner runs, by method.
+        name: the quantity of the page. Columns for errors of the joints follow if a row has these errors.
+        enforcement: method -> what enforces the joints.
+        declared: declared error of a method at a step. A plateau that is larger is marked.
+        inner_runs: method -> description of the inner runs.
     """
     step, compared = compared_step(rows), quantity(name)
     verdicts = by_method(sweeps(rows), name)
@@ -88,7 +88,7 @@ def scene_table(
 
 @dataclass(frozen=True)
 class Advice:
-    """The row of an engine's cheapest method and step for some targets; None if no step meets these targets."""
+    """The recommended setting of an engine for some targets. `row` is None if no step meets these targets."""
 
     engine: str
     targets: tuple[float, ...]
@@ -97,7 +97,7 @@ class Advice:
 
 
 def advice(rows: Sequence[Measurement], name: str, order: Sequence[str] = ()) -> tuple[Advice, ...]:
-    """The cheapest method for each engine and target, from the rows of one scene; `order` has the page's methods.
+    """The cheapest method for each engine and target, from the rows of one scene. `order`: methods in the page's order.
 
     A step counts only if all smaller steps of its method meet the target too, since errors may cancel at one step.
     """
@@ -126,7 +126,7 @@ def _cheapest(
 
 
 def reliable(members: Sequence[Measurement], name: str, target: float) -> list[Measurement]:
-    """The timed rows of one method at steps below the smallest step that misses the target."""
+    """The timed rows of one method at steps that are smaller than each step that misses the target."""
     rows = []
     for row in sorted(members, key=lambda row: row.step):
         if not (Outcome(row.outcome).comparable and getattr(row, name) <= target):
@@ -143,7 +143,7 @@ def advice_table(advised: Iterable[Advice], name: str, enforcement: Mapping[str,
 def advice_lines(
     advised: Iterable[Advice], name: str, enforcement: Mapping[str, str] | None = None
 ) -> tuple[list[str], list[list[str]]]:
-    """(header, lines) of the table of recommended settings."""
+    """The header and the lines of the table of recommended settings."""
     unit = quantity(name).unit
     body = []
     for setting in advised:
@@ -160,11 +160,11 @@ def advice_lines(
     return [*header, "step", f"error [{unit}]", "CPU [ms/s]", "order"], body
 
 
-# A program that does not import this suite is a file `results/programs/<scene>_<method>.py`, in which "_" replaces all
-# but letters and digits. The program has the lines `duration = ...` (within the scene's horizon) and `steps = ...`,
-# and prints the position and angle of one body, `end`. Programs are written by hand, because `crosscheck export` can't
-# write methods with code in each step. A report changes only the line `steps = ...`. For settings without a program,
-# the page has code that calls this suite.
+# A program without this suite is a file `results/programs/<scene>_<method>.py`, where "_" replaces other characters
+# than letters and digits. It has the lines `duration = ...` (within the scene's horizon) and `steps = ...`, and prints
+# the position and angle `end` of a body. Programs are written by hand, because `crosscheck export` can't write methods
+# with code in each step. A report changes only the line `steps = ...`. For a method without a program, the page has
+# code that calls this suite.
 PROGRAM_FOLDER = "programs"
 RESULTS = Path(__file__).parents[1] / "results"
 DURATION_LINE = re.compile(r"^duration = ([\d.]+)", re.MULTILINE)
@@ -173,11 +173,8 @@ STEPS_LINE = re.compile(r"^steps = \d+.*$", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Program:
-    """The program of a recommended method.
-
-    every: the number of steps between samples.
-    file: its path in the folder of the results.
-    text: empty if there is no such file.
+    """The program of a recommended method. every: the number of steps between samples. file: path in the folder of the
+    results. text: text of the file, or "" if it does not exist.
     """
 
     method: str

@@ -1,4 +1,4 @@
-"""Versions, processor and date for the last line of pages."""
+"""Versions, processor and date for the last line of a page."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _version(package: str) -> str:
 
 
 def still_installed(versions: str) -> bool:
-    """Whether the installed packages have the versions in `versions`, a result of `row_versions`.
+    """Whether the installed packages have these versions, which are a result of `row_versions`.
 
     Only Python's minor version is compared, since a patch release changes no number of an engine.
     """
@@ -52,7 +52,7 @@ def still_installed(versions: str) -> bool:
 
 
 def machine() -> str:
-    """A text such as 'x86_64, 2 processors, name of the processor, Linux'; it does not contain the host's name."""
+    """A text such as 'x86_64, 2 processors, name of the processor, Linux', without the host's name."""
     return f"{platform.machine()}, {os.cpu_count()} processors, {_processor()}, {platform.system()}"
 
 

@@ -1,4 +1,5 @@
-"""Selections of rows. A missing row is UNMEASURED, so that a template can leave out the clause that needs it."""
+"""Selections of rows. Rows with selections. A missing row is UNMEASURED, so that a template can leave out a clause
+without numbers."""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ class Rows(tuple[Measurement, ...]):
     __slots__ = ()
 
     def of(self, scene: str = "", method: str = "", purpose: str = "sweep") -> Rows:
-        """The rows with this scene, method ("mujoco tuned") and purpose; an empty text selects all."""
+        """The rows with this scene, method ("mujoco tuned") and purpose; "" selects all."""
         wanted = {"scene": scene, "method": method, "purpose": purpose}
         return Rows(
             row for row in self if all(not value or getattr(row, name) == value for name, value in wanted.items())
@@ -35,12 +36,13 @@ class Rows(tuple[Measurement, ...]):
         return Rows(row for row in self if math.isfinite(getattr(row, name)))
 
     def near(self, step: float) -> Any:
-        """The row whose step is nearest to `step` by ratio; UNMEASURED if the ratio is NEAREST_WITHIN or more."""
+        """The row with the step nearest to `step` [s]; UNMEASURED if the ratio of the steps is NEAREST_WITHIN or
+        more."""
         row = min(self, key=lambda row: abs(math.log(row.step / step)), default=None)
         return row if row is not None and max(row.step / step, step / row.step) < NEAREST_WITHIN else UNMEASURED
 
     def at(self, step: float) -> Any:
-        """The row at this step [s], if it can be compared."""
+        """The row at this step [s] if its run can be compared."""
         rows = (row for row in self if is_step(row.step, step))
         return next((row for row in rows if Outcome(row.outcome).comparable), UNMEASURED)
 
@@ -52,18 +54,18 @@ class Rows(tuple[Measurement, ...]):
         return min(self, key=lambda row: row.step, default=UNMEASURED)
 
     def sweep(self, name: str = "angle") -> Any:
-        """The convergence of an error; the rows are those of one method in one scene."""
+        """The convergence of an error. The rows must be those of one method in one scene."""
         return next(iter(by_method(sweeps(self, [quantity(name)]), name).values()), UNMEASURED)
 
     def outcomes(self) -> list[str]:
         return list(dict.fromkeys(str(row.outcome) for row in self))
 
     def count(self, *outcomes: str) -> Any:
-        """The number of rows with one of `outcomes`; without arguments, the number of all rows."""
+        """The number of rows with one of `outcomes`, or of all rows without arguments."""
         return sum(not outcomes or row.outcome in outcomes for row in self) if self else UNMEASURED
 
     def points(self, name: str) -> list[tuple[float, float]]:
-        """(step [s], error) of all rows with a positive finite error, failed runs included."""
+        """Pairs (step [s], error) of all rows with a positive finite error, failed runs included."""
         values = ((row.step, getattr(row, name)) for row in self)
         return [(step, error) for step, error in values if 0 < error < math.inf]
 
@@ -71,8 +73,8 @@ class Rows(tuple[Measurement, ...]):
 def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
     """The functions by which templates look up rows of scenes.
 
-    The functions are `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine,
-    variant, every)`, and `ended(scene, engine, variant)`, which returns the method's outcomes.
+    They are `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine, variant,
+    every)` and `ended(scene, engine, variant)`. The last function returns the method's outcomes.
     """
     rows = Rows(material.sweep(scenes))
 
@@ -90,7 +92,7 @@ def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
 
 
 def rows_of_pages(pages: Mapping[Page, Material]) -> Rows:
-    """The rows of the pages' scenes, the largest step first. Rows of scenes with other parameters are left out."""
+    """The rows of the scenes of pages; the largest step is first. Rows of scenes with other parameters are left out."""
     scenes = {scene.name: scene for page in pages for scene in page.scenes}
     rows = {
         cell: row

@@ -1,4 +1,4 @@
-"""Numbers and rows as text: the number format, text tables and Markdown tables."""
+"""The format of numbers, text tables and Markdown tables."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ENFORCED_BY = "joints enforced by"
 
 
 def number(value: float, digits: int = 2, unknown: str = DASH, infinite: str = "∞") -> str:
-    """A number with this many significant digits, such as 1.3e-4, 1e-3, 0.25, 12; `unknown` is the text for NaN."""
+    """A number with `digits` significant digits, such as 1.3e-4, 1e-3, 0.25 or 12. `unknown` is the text for NaN."""
     if not math.isfinite(value):
         return unknown if math.isnan(value) else infinite
     if value == 0:
@@ -29,7 +29,7 @@ def number(value: float, digits: int = 2, unknown: str = DASH, infinite: str = "
 
 
 def words_of(cell: str | float) -> str:
-    """The text of a cell; an integer has all its digits."""
+    """The text of a cell. All digits of an integer are kept."""
     return cell if isinstance(cell, str) else str(cell) if isinstance(cell, int) else number(cell)
 
 
@@ -83,7 +83,7 @@ def markdown(
 ) -> str:
     """A Markdown table; the first `left` columns are aligned to the left.
 
-    `enforcement` (what enforces the joints, by method) becomes the second column, after the column of the methods.
+    `enforcement` (method -> what enforces the joints) becomes the second column, after the methods.
     """
     if enforcement:
         header, left = [header[0], ENFORCED_BY, *header[1:]], left + 1
@@ -100,7 +100,7 @@ ERROR_HEADER = ("method", "outcome", "step", *(f"{q.label} [{q.unit}]" for q in 
 
 
 def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """The lines below ERROR_HEADER, sorted by method and step."""
+    """The lines of a table with ERROR_HEADER, sorted by method and step."""
     return [
         [row.method, row.outcome, step_words(row.step)]
         + [number(getattr(row, q.name)) for q in QUANTITIES]
@@ -144,7 +144,7 @@ def sweep_words(sweep: Sweep, lost: str = "") -> str:
 
 
 def error_words(row: Measurement | None, name: str) -> str:
-    """The error of a run, or its outcome if it can't be compared; a dash without a run."""
+    """The error of a run, or the outcome of a run that can't be compared; a dash without a run."""
     if row is None:
         return DASH
     return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)
@@ -168,7 +168,7 @@ def outcome_grid(rows: Iterable[Measurement]) -> str:
 
 
 def _outcome_in_brief(row: Measurement) -> str:
-    """The angle error, or the outcome if the run can't be compared; a torn joint has its gap."""
+    """The angle error, or the outcome if the run can't be compared. The gap is added for a torn joint."""
     if Outcome(row.outcome).comparable:
         return f"{number(row.angle)} rad"
     if row.outcome == Outcome.TORN and math.isfinite(row.gap):
@@ -177,7 +177,7 @@ def _outcome_in_brief(row: Measurement) -> str:
 
 
 def cell_table(rows: Iterable[Measurement], columns: Sequence[str]) -> str:
-    """A Markdown table with a line for each row: method, step and the errors of these quantities."""
+    """A Markdown table with the method, the step and the errors of these quantities for each row."""
     quantities = [quantity(name) for name in columns]
     body = []
     for row in rows:
@@ -190,7 +190,7 @@ SUMMARY_HEADER = ("method", "angle error [rad]", "at step", "CPU [ms/s]", "order
 
 
 def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """The lines below SUMMARY_HEADER, one for each method of one scene."""
+    """The lines of a table with SUMMARY_HEADER, for the methods in one scene."""
     rows = list(rows)
     verdicts = by_method(sweeps(rows), "angle")
     out = []

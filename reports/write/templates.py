@@ -1,4 +1,4 @@
-"""The Jinja environment of pages, links to headings, and parts of documents that a report replaces."""
+"""The Jinja environment of pages, links to headings, and replaceable parts of documents."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def anchor(heading: str) -> str:
 
 
 def headings(text: str) -> tuple[str, ...]:
-    """The headings of a Markdown text; comments in code are not headings."""
+    """The headings of a Markdown text, without comments in code."""
     return tuple(HEADING.findall(FENCED_BLOCK.sub("", text)))
 
 
 def link(page: str, heading: str, files: Mapping[str, str]) -> str:
-    """The address of a heading in a file whose name begins with the page's name; else the page's address."""
+    """The address of a heading in a file whose name begins with the page's name, or else the page's address."""
     for name in sorted(files, key=lambda name: (name != f"{page}.md", name)):
         if name.startswith(page) and name.endswith(".md") and heading in headings(files[name]):
             return f"{name}#{anchor(heading)}"
@@ -38,17 +38,17 @@ def link(page: str, heading: str, files: Mapping[str, str]) -> str:
 
 
 def without_dead_links(text: str, exists: Callable[[str], bool]) -> str:
-    """The text, with plain text in place of links to pages that do not exist."""
+    """The text, where plain text replaces links to pages that do not exist."""
     return PAGE_LINK.sub(lambda match: match[0] if exists(match[2]) else match[1], text)
 
 
 def marks(name: str) -> tuple[str, str]:
-    """The comments at the beginning and at the end of a part of a document."""
+    """The comments that mark the beginning and the end of a part of a document."""
     return f"<!-- {name}: written by `crosscheck report` -->", f"<!-- end of {name} -->"
 
 
 def with_part(document: str, name: str, text: str) -> str:
-    """The document with another text in a part. Raises ValueError if a mark of this part is missing."""
+    """The document with a new text in the part `name`. Raises ValueError if a mark of this part is missing."""
     first, last = marks(name)
     before, begin, following = document.partition(first)
     _, end, after = following.partition(last)
@@ -60,7 +60,7 @@ def with_part(document: str, name: str, text: str) -> str:
 TEMPLATES = Path(__file__).parents[1] / "pages"
 
 CODE = re.compile(r"(^ *```.*?^ *```$|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
-# Pages contain the tags `details` and `summary`, and comments.
+# A page may contain the tags `details` and `summary`, and comments.
 FOREIGN_TAG = re.compile(r"<(?=[A-Za-z/!?])(?!/?(?:details|summary)>|!--)")
 
 
@@ -79,7 +79,7 @@ def inert_page(text: str) -> str:
 def environment(folder: Path = TEMPLATES) -> Environment:
     """The environment of templates. An undefined name raises an exception; an unknown number becomes UNKNOWN_MARK.
 
-    Templates of another folder have the prefix "own/", so that they can't replace our templates.
+    Templates in another folder have the prefix "own/", so that they can't replace our templates.
     """
     out = Environment(
         loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
@@ -105,7 +105,7 @@ def template(text: str) -> Template:
 
 
 def template_of(page: Page) -> Template:
-    """The page's own template, else the template with the page's name, else "base.md"."""
+    """The page's template; without it the template with the page's name, or else "base.md"."""
     if page.template is not None:
         return environment(page.template.parent).get_template(f"own/{page.template.name}")
     return environment().select_template([f"{page.name}/page.md", "base.md"])

@@ -1,8 +1,8 @@
-"""Missing numbers in templates: a clause that lacks a number is left out.
+"""Missing numbers in templates. A clause that lacks a number is left out.
 
-A lookup without a row returns `UNMEASURED`, which replaces the row and each of its numbers. UNMEASURED is false, is
-NaN, and has UNMEASURED for each attribute. A template prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes
-the text up to `{% endfilter %}` if the text contains UNKNOWN_MARK. `without_marks` replaces the other marks by a text.
+A lookup without a row returns `UNMEASURED`. It is false and NaN, and each of its attributes is UNMEASURED. A template
+prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes the text up to `{% endfilter %}` if it contains
+UNKNOWN_MARK. `without_marks` replaces other marks by NOT_MEASURED.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any
 
 from reports.write import tables
 
-UNKNOWN_MARK = "\ue000"  # a character for private use, which no text contains
+UNKNOWN_MARK = "\ue000"  # a private-use character, which no text contains
 NOT_MEASURED = "(not measured)"
-# A line that consists of a picture without a file.
+# A line with only a picture that has no file.
 MISSING_PICTURE = re.compile(rf"^!\[[^\n]*\]\({UNKNOWN_MARK}\)\n", re.MULTILINE)
 
 
@@ -55,7 +55,7 @@ def if_measured(clause: str) -> str:
     return "" if UNKNOWN_MARK in clause else clause
 
 
-# In a sentence a dash for an unknown number could be read as a minus sign.
+# A dash for an unknown number could be read as a minus sign in a sentence.
 number = partial(tables.number, unknown=UNKNOWN_MARK)
 milliseconds = partial(tables.milliseconds, unknown=UNKNOWN_MARK)
 step = partial(tables.step_words, unknown=UNKNOWN_MARK)
@@ -76,5 +76,5 @@ FILTERS = {
 
 
 def without_marks(text: str) -> str:
-    """The text without pictures that lack a file, and with NOT_MEASURED for missing numbers."""
+    """The text without pictures that have no file, and with NOT_MEASURED for missing numbers."""
     return MISSING_PICTURE.sub("", text).replace(UNKNOWN_MARK, NOT_MEASURED)
