@@ -7,10 +7,12 @@ import math
 import re
 import shutil
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
+from reference.chapter.centrodes import instant_centre
 from reference.chapter.errata import velocities
 from reference.chapter.skates import commutator_displacement, sidestep
 from reference.scenes.four_bar.scenes import DrivenFourBar
@@ -18,14 +20,21 @@ from reports.site.lesson import exercise_of
 from reports.site.lessons import LESSONS
 from reports.site.munk2d import SHIM
 
-NODE = 'import { ANSWERS } from "./exercises.js"; console.log(JSON.stringify(Object.fromEntries(' + (
-    "Object.entries(ANSWERS).map(([name, answer]) => [name, answer()]))));"
-)
+NODE = """
+import { MOTIONS, asDxf, asSvg, crosses, seriesOf, shapesOf } from "./cam.js";
+import { ANSWERS } from "./exercises.js";
+const answers = Object.fromEntries(Object.entries(ANSWERS).map(([name, answer]) => [name, answer()]));
+const shapes = shapesOf(MOTIONS.Ellipse, -1);
+const drawn = [...Array(200).keys()].map((k) => [2 + Math.cos(k * Math.PI / 100), Math.sin(k * Math.PI / 100)]);
+const crossing = [[0, 0], [1, 1], [1, 0], [0, 1], [0, 0]];
+console.log(JSON.stringify({ answers, shapes, dxf: asDxf(shapes), svg: asSvg(shapes), circle: seriesOf(drawn),
+  crosses: [crosses(shapes.space), crosses(shapesOf(MOTIONS["Straight line"], 1).space), crosses(crossing)] }));
+"""
 EXERCISES = {exercise.answer: exercise for lesson in LESSONS for exercise in lesson.exercises}
 
 
 @pytest.fixture(scope="module")
-def answers(tmp_path_factory):
+def page(tmp_path_factory):
     if shutil.which("node") is None:
         pytest.skip("no Node.js is installed")
     folder = tmp_path_factory.mktemp("exercises")
@@ -38,10 +47,18 @@ def answers(tmp_path_factory):
     return json.loads(ended.stdout)
 
 
+@pytest.fixture(scope="module")
+def answers(page):
+    return page["answers"]
+
+
 # The answers by the reference.
 EXPECTED = {
     "tip_speed": float(np.hypot(*velocities(1.0, (math.pi / 6, math.pi / 3), (2.0, -1.0)).b)),
     "freedoms_with_handle": 3.0,
+    "centre_above": float(instant_centre(np.zeros(3), np.array([3.0, 0.0, 2.0]))[0][1]),
+    "moving_circle": 0.25,  # Cardan's circles: half of the ring's radius
+    "contact_speed": 3 / (1 / 0.25 - 1 / 0.5),
     "commutator_aside": float(commutator_displacement(math.radians(20), 0.5)[1]),
     "sidestep_turn": math.degrees(sidestep(0.4, 0.5, math.pi / 6)[0].turn),
     "velocity_from_row": (math.sin(math.pi / 6) + 2 * 0.3) / math.cos(math.pi / 6),
@@ -51,7 +68,7 @@ EXPECTED = {
 
 def test_the_answers_of_the_page_are_those_of_the_reference(answers):
     assert set(answers) == set(EXPECTED) == set(EXERCISES)
-    assert answers == pytest.approx(EXPECTED, rel=1e-9)
+    assert answers == pytest.approx(EXPECTED, rel=1e-8)
 
 
 @pytest.mark.parametrize("name", EXERCISES)
@@ -67,3 +84,33 @@ def test_each_lesson_with_exercises_has_three():
 def test_an_exercise_without_a_solution_is_refused():
     with pytest.raises(ValueError, match="'Speed: `speed` \\[m\\]': an exercise has"):
         exercise_of("Speed: `speed` [m]\n\nHow fast?")
+
+
+def test_the_shapes_of_the_page_are_the_centrodes_of_the_reference(page):
+    shapes = {name: np.array(values) for name, values in page["shapes"].items()}
+    t = np.linspace(0.0, 2 * np.pi, 361)
+    twist = np.column_stack([-0.5 * np.sin(t), 0.2 * np.cos(t), np.full(361, -1.0)])
+    pose = np.column_stack([0.5 * np.cos(t), 0.2 * np.sin(t), -t])
+    space, body = instant_centre(pose, twist)
+    assert np.abs(np.hstack([shapes["path"] - pose[:, :2], shapes["space"] - space])).max() < 1e-14
+    assert np.abs(shapes["body"] - body).max() < 1e-14
+    assert page["crosses"] == [False, False, True]
+
+
+def test_a_drawn_circle_is_the_first_harmonic(page):
+    expected = {"cosines": [[2, 0], [1, 0], [0, 0], [0, 0]], "sines": [[0, 0], [0, 1], [0, 0], [0, 0]]}
+    for name, values in expected.items():
+        # The drawn points are the corners of a polygon with 200 sides, 1e-4 from the circle.
+        assert np.array(page["circle"][name]) == pytest.approx(np.array(values), abs=2e-4)
+
+
+def test_the_files_of_the_shapes_contain_both_curves(page, tmp_path):
+    ezdxf = pytest.importorskip("ezdxf", reason="ezdxf is not installed: pip install '.[dxf]'")
+    path = tmp_path / "shapes.dxf"
+    path.write_text(page["dxf"])
+    lines = {
+        line.dxf.layer: np.array([point[:2] for point in line.points()]) for line in ezdxf.readfile(path).modelspace()
+    }
+    for name in ("space", "body"):
+        assert np.abs(lines[name.upper()] - np.array(page["shapes"][name][:-1])).max() < 1e-6
+    assert [each.get("id") for each in ElementTree.fromstring(page["svg"])] == ["space", "body"]

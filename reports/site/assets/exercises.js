@@ -1,8 +1,9 @@
 // @ts-check
 /** Exercises: the page computes each answer from equations, and compares it with the reader's. */
 
+import { MOTIONS, extent, shapesOf } from "./cam.js";
 import { freedoms, rates } from "./exact.js";
-import { placed } from "./motion.js";
+import { instantCentre, placed } from "./motion.js";
 import { commutator, moved, sidestep } from "./parking.js";
 
 /** @typedef {import("./motion.js").Point} Point */
@@ -75,6 +76,12 @@ export const ANSWERS = {
     return Math.hypot(turning[3] - turning[5] * y, turning[4] + turning[5] * x);
   },
   freedoms_with_handle: () => freedoms(linkage(STANDING, [...PERSON, "SL", "LG"], "AEG")),
+  centre_above: () => instantCentre([0, 0, 0], [3, 0, 2])?.[1] ?? NaN,
+  moving_circle: () => extent(shapesOf(MOTIONS["Straight line"], 1).body) / 2,
+  contact_speed: () => {
+    const { space, angles } = shapesOf(MOTIONS["Straight line"], 1, 36_000);
+    return (3 * Math.hypot(space[1][0] - space[0][0], space[1][1] - space[0][1])) / (angles[1] - angles[0]);
+  },
   commutator_aside: () => commutator(rad(20), 0.5).reduce(moved, START)[1],
   sidestep_turn: () => (sidestep(0.4, 0.5)[0].turn * 180) / Math.PI,
   velocity_from_row: () => {

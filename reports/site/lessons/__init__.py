@@ -5,10 +5,10 @@ from reference.scene import Scene
 from reports.site.animated import Take
 from reports.site.lessons.chains import CHAINS
 from reports.site.lessons.linkages import CENTRODES, FOUR_BAR, PENDULUM, SLIDER_CRANK
-from reports.site.lessons.rolling import GEARS, ROLLING
+from reports.site.lessons.rolling import CAM, GEARS, ROLLING
 from reports.site.lessons.skates import PARKING, SKATE, WHEELS
 
-LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, PARKING, WHEELS, ROLLING, GEARS, CENTRODES)
+LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, PARKING, WHEELS, ROLLING, GEARS, CENTRODES, CAM)
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:

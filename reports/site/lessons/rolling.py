@@ -10,6 +10,7 @@ from engines.pymunk.methods import ROLL_FACETED
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
 from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
+from reports.site.lessons.linkages import CENTRODES
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
 ROLLER = (("roller", (0.0, 0.0)),)
@@ -96,5 +97,18 @@ GEARS = Lesson(
         Experiment(
             "two gears", BOTH, {"munk": FEW}, (Claim("munk", least=10),), overlays=FORCES, section="The contact"
         ),
+    ),
+)
+
+CAM = Lesson(
+    "cam",
+    "A cam by rolling",
+    "centrodes",
+    (CENTRODES.scene("rolling"), ROLLING.scene("a cam")),
+    (
+        Experiment("rolling", overlays=CENTRE, section="The coupler of the four-bar"),
+        Experiment("rolling", overlays=CENTRE),
+        Experiment("rolling", overlays=CENTRE, widget="cam"),
+        Experiment("a cam", {"munk": MANY, "steps": 2000}, {"munk": FEW}, (Claim("munk", least=10),), overlays=CENTRE),
     ),
 )

@@ -1,0 +1,165 @@
+// @ts-check
+/** Two shapes from a drawn motion: the reader draws the path of a point of a body that turns once, and both centrodes follow. */
+
+/** @typedef {import("./motion.js").Point} Point
+ * @typedef {{cosines: Point[], sines: Point[]}} Series a closed path as a Fourier series: sum of cosines[k] cos(k t) + sines[k] sin(k t)
+ * @typedef {{path: Point[], space: Point[], body: Point[], angles: number[]}} Shapes points at equal steps of the angle [m, rad] */
+
+const HARMONICS = 3; // highest frequency of a drawn path, which makes the shapes smooth
+const POINTS = 360; // points of each shape
+const SMALL = 1e-9; // an extent of the path of the centre that counts as zero [m]
+
+/** Return the series of a closed path through drawn points, which have equal distances along the path. @param {Point[]} drawn @returns {Series} */
+export function seriesOf(drawn) {
+  const closed = [...drawn, drawn[0]];
+  const lengths = [0];
+  for (let k = 1; k < closed.length; k++) lengths.push(lengths[k - 1] + Math.hypot(closed[k][0] - closed[k - 1][0], closed[k][1] - closed[k - 1][1]));
+  const count = 128;
+  const even = Array.from({ length: count }, (_, index) => {
+    const wanted = (lengths[lengths.length - 1] * index) / count;
+    const k = Math.max(1, lengths.findIndex((length) => length > wanted));
+    const share = (wanted - lengths[k - 1]) / (lengths[k] - lengths[k - 1]);
+    return [0, 1].map((axis) => closed[k - 1][axis] + share * (closed[k][axis] - closed[k - 1][axis]));
+  });
+  const part = (/** @type {(angle: number) => number} */ of, /** @type {number} */ k) => /** @type {Point} */ ([0, 1].map((axis) =>
+    ((k ? 2 : 1) / count) * even.reduce((sum, point, index) => sum + point[axis] * of((2 * Math.PI * k * index) / count), 0)));
+  const frequencies = [...Array(HARMONICS + 1).keys()];
+  return { cosines: frequencies.map((k) => part(Math.cos, k)), sines: frequencies.map((k) => part(Math.sin, k)) };
+}
+
+/** Return both centrodes of a body whose point O' follows the path while the body turns once; `turn` is 1 or -1.
+ * The instant centre is at k x v / omega from O'. @param {Series} series @param {number} turn @param {number} [points] @returns {Shapes} */
+export function shapesOf({ cosines, sines }, turn, points = POINTS) {
+  /** @type {Shapes} */
+  const out = { path: [], space: [], body: [], angles: [] };
+  for (let index = 0; index <= points; index++) {
+    const t = (2 * Math.PI * index) / points;
+    const sum = (/** @type {number} */ axis, /** @type {boolean} */ rate) => cosines.reduce((total, _, k) => {
+      const [a, b, c, s] = [cosines[k][axis], sines[k][axis], Math.cos(k * t), Math.sin(k * t)];
+      return total + (rate ? k * (b * c - a * s) : a * c + b * s);
+    }, 0);
+    const [x, y, vx, vy] = [sum(0, false), sum(1, false), sum(0, true), sum(1, true)];
+    const [rx, ry, angle] = [-vy / turn, vx / turn, turn * t];
+    out.path.push([x, y]);
+    out.space.push([x + rx, y + ry]);
+    out.body.push([Math.cos(angle) * rx + Math.sin(angle) * ry, Math.cos(angle) * ry - Math.sin(angle) * rx]);
+    out.angles.push(angle);
+  }
+  return out;
+}
+
+/** Return the larger side of the box around points. @param {Point[]} points */
+export const extent = (points) => Math.max(...[0, 1].map((axis) => Math.max(...points.map((p) => p[axis])) - Math.min(...points.map((p) => p[axis]))));
+
+/** Return whether a closed path crosses itself. @param {Point[]} points */
+export function crosses(points) {
+  const side = (/** @type {Point} */ [ax, ay], /** @type {Point} */ [bx, by], /** @type {Point} */ [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+  const apart = (/** @type {number} */ a, /** @type {number} */ b) => side(points[a], points[a + 1], points[b]) * side(points[a], points[a + 1], points[b + 1]) < 0;
+  const last = points.length - 1;
+  for (let a = 0; a < last; a++) for (let b = a + 2; b < last; b++) if (apart(a, b) && apart(b, a)) return true;
+  return false;
+}
+
+const line = (/** @type {Point[]} */ points) => `M${points.map(([x, y]) => `${x.toFixed(5)} ${y.toFixed(5)}`).join("L")}Z`;
+
+/** Return both shapes as an SVG, side by side at one scale, 1 m of the drawing as 100 mm. @param {Shapes} shapes */
+export function asSvg({ space, body }) {
+  const size = 1.1 * Math.max(extent(space), extent(body));
+  const middle = (/** @type {Point[]} */ points) => [0, 1].map((axis) => (Math.max(...points.map((p) => p[axis])) + Math.min(...points.map((p) => p[axis]))) / 2);
+  const shape = (/** @type {Point[]} */ points, /** @type {string} */ name, /** @type {number} */ at) =>
+    `<path id="${name}" transform="translate(${at - middle(points)[0]} ${size / 2 + middle(points)[1]}) scale(1 -1)" d="${line(points)}"/>`;
+  return `<svg xmlns="http://www.w3.org/2000/svg" width="${200 * size}mm" height="${100 * size}mm" viewBox="0 0 ${2 * size} ${size}" fill="none" stroke="black" stroke-width="0.002">` +
+    `${shape(space, "space", size / 2)}${shape(body, "body", 1.5 * size)}</svg>\n`;
+}
+
+/** Return both shapes as a DXF of release 12 in metres, on the layers SPACE and BODY. @param {Shapes} shapes */
+export function asDxf({ space, body }) {
+  const polyline = (/** @type {string} */ layer, /** @type {Point[]} */ points) => [
+    ...[0, "POLYLINE", 8, layer, 66, 1, 70, 1],
+    ...points.slice(0, -1).flatMap(([x, y]) => [0, "VERTEX", 8, layer, 10, x.toFixed(6), 20, y.toFixed(6)]),
+    ...[0, "SEQEND"],
+  ];
+  const head = [0, "SECTION", 2, "HEADER", 9, "$ACADVER", 1, "AC1009", 9, "$INSUNITS", 70, 6, 0, "ENDSEC", 0, "SECTION", 2, "ENTITIES"];
+  return `${[...head, ...polyline("SPACE", space), ...polyline("BODY", body), 0, "ENDSEC", 0, "EOF"].join("\n")}\n`;
+}
+
+/** @type {Record<string, {cosines: Point[], sines: Point[]}>} */
+export const MOTIONS = {
+  "Straight line": { cosines: [[0, 0], [0.5, 0]], sines: [[0, 0], [0, 0]] },
+  Circle: { cosines: [[0, 0], [0.3, 0]], sines: [[0, 0], [0, 0.3]] },
+  Ellipse: { cosines: [[0, 0], [0.5, 0]], sines: [[0, 0], [0, 0.2]] },
+};
+
+/** @param {HTMLElement} place */
+function begin(place) {
+  place.innerHTML =
+    '<svg class="lot" viewBox="-1.2 -.9 2.4 1.8" role="img" aria-label="Draw the path of a point; the two shapes appear."><g transform="scale(1 -1)"><path class="space"/><path class="path"/>' +
+    '<g class="moving"><path class="body"/><path class="mark" d="M0 0H.2"/><circle class="nose" r=".03"/></g><circle class="touch" r=".025"/></g></svg>' +
+    `<div class="controls">${Object.keys(MOTIONS).map((name) => `<button type="button" data-motion="${name}">${name}</button>`).join("")}` +
+    '<label><input type="checkbox"> the body turns clockwise</label>' +
+    '<label class="time">angle <input type="range" min="0" max="360" value="0"></label>' +
+    '<button type="button" data-file="svg">Download SVG</button><button type="button" data-file="dxf">Download DXF</button></div><p class="count" role="status"></p>';
+  const find = (/** @type {string} */ name) => /** @type {SVGElement} */ (place.querySelector(name));
+  const drawing = /** @type {SVGSVGElement} */ (/** @type {unknown} */ (find("svg")));
+  const [clockwise, angle] = /** @type {HTMLInputElement[]} */ ([...place.querySelectorAll("input")]);
+  let series = MOTIONS.Ellipse;
+  let shapes = shapesOf(series, 1);
+  /** @type {Point[]} */
+  let drawn = [];
+
+  function turnTo() {
+    const index = Math.round((Number(angle.value) / 360) * POINTS);
+    find(".moving").setAttribute("transform", `translate(${shapes.path[index].join(" ")}) rotate(${(shapes.angles[index] * 180) / Math.PI})`);
+    for (const [axis, name] of [[0, "cx"], [1, "cy"]]) find(".touch").setAttribute(String(name), String(shapes.space[index][Number(axis)]));
+  }
+
+  function make() {
+    shapes = shapesOf(series, clockwise.checked ? -1 : 1);
+    for (const name of /** @type {const} */ (["path", "space", "body"])) find(`.${name}`).setAttribute("d", line(shapes[name]));
+    const [fixed, moving] = [extent(shapes.space), extent(shapes.body)];
+    const still = fixed < SMALL;
+    for (const button of place.querySelectorAll("[data-file]")) button.toggleAttribute("disabled", still);
+    /** @type {HTMLElement} */ (place.querySelector(".count")).textContent = still ? "The body only turns about one fixed point, so both shapes are that point. Draw another path, or turn the body the other way."
+      : `The fixed shape is ${fixed.toFixed(3)} m wide, the moving shape ${moving.toFixed(3)} m. The moving shape rolls on the fixed one, and the dot of the body then follows the drawn path.` +
+        (crosses(shapes.space) || crosses(shapes.body) ? " A shape crosses itself, so it cannot be cut from one piece: draw a rounder path, or turn the body the other way." : "");
+    turnTo();
+  }
+
+  const hand = (/** @type {PointerEvent} */ event) => {
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(/** @type {SVGGElement} */ (drawing.firstElementChild).getScreenCTM()?.inverse());
+    return /** @type {Point} */ ([x, y]);
+  };
+  drawing.addEventListener("pointerdown", (event) => {
+    drawing.setPointerCapture(event.pointerId);
+    event.preventDefault();
+    drawn = [hand(event)];
+  });
+  drawing.addEventListener("pointermove", (event) => {
+    if (!drawing.hasPointerCapture(event.pointerId)) return;
+    const now = hand(event);
+    const last = drawn[drawn.length - 1];
+    if (Math.hypot(now[0] - last[0], now[1] - last[1]) > 0.005) drawn.push(now);
+    find(".path").setAttribute("d", line(drawn));
+  });
+  drawing.addEventListener("pointerup", () => {
+    if (extent(drawn) > 0.1) series = seriesOf(drawn);
+    make();
+  });
+  for (const button of place.querySelectorAll("button")) {
+    const { motion, file } = button.dataset;
+    button.addEventListener("click", () => {
+      if (motion) series = MOTIONS[motion];
+      if (motion) make();
+      if (!file) return;
+      const text = file === "svg" ? asSvg(shapes) : asDxf(shapes);
+      const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(new Blob([text])), download: `shapes.${file}` });
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    });
+  }
+  clockwise.addEventListener("change", make);
+  angle.addEventListener("input", turnTo);
+  make();
+}
+
+if (typeof document !== "undefined") for (const place of document.querySelectorAll(".widget.cam")) if (place instanceof HTMLElement) begin(place);
