@@ -109,7 +109,8 @@ def test_the_files_of_the_shapes_contain_both_curves(page, tmp_path):
     path = tmp_path / "shapes.dxf"
     path.write_text(page["dxf"])
     lines = {
-        line.dxf.layer: np.array([point[:2] for point in line.points()]) for line in ezdxf.readfile(path).modelspace()
+        line.dxf.layer: np.array([(point.x, point.y) for point in line.points()])
+        for line in ezdxf.readfile(path).modelspace()
     }
     for name in ("space", "body"):
         assert np.abs(lines[name.upper()] - np.array(page["shapes"][name][:-1])).max() < 1e-6
