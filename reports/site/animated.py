@@ -1,4 +1,4 @@
-"""Animations of a motion: an SVG with CSS animations, or a film."""
+"""Animations of a motion as an SVG with CSS animations or as a film."""
 
 from __future__ import annotations
 
@@ -33,14 +33,15 @@ from reports.site import drawn
 from reports.site.live.sliders import Look
 
 Array = NDArray[np.float64]
-Moving = list[tuple[Line2D, Array, Array]]  # Lines, their points in the body's frame (points, 2), its poses (times, 3).
-Growing = list[tuple[Line2D, Array]]  # Lines, and the error at every instant [rad].
+# A line, its points in the frame of its body (points, 2), and the body's poses (times, 3).
+Moving = list[tuple[Line2D, Array, Array]]
+Growing = list[tuple[Line2D, Array]]  # A line, and the error at each time [rad].
 
 FRAMES = 100  # Approximate upper bound of the number of samples in an animation.
 SECONDS = 8.0  # Duration of one repetition.
 PAUSE = 0.12  # Pause at the end of a repetition of an SVG, as a fraction of SECONDS.
-KEYS = 60  # Key frames of an SVG; the browser interpolates linearly between them.
-RATE = 25  # Frames per second of a film; the duration of a frame in a GIF is a multiple of 0.01 s.
+KEYS = 60  # Number of key frames of an SVG. The browser interpolates linearly between key frames.
+RATE = 25  # Frames per second of a film. In a GIF the duration of a frame must be a multiple of 0.01 s.
 INCHES = (12.8, 5.6)
 DOTS = 100  # Pixels per inch of a film.
 # Line width [pt] and dashes (in multiples of the width) of each motion.
@@ -55,10 +56,10 @@ DECADES = 8  # largest number of decades of the error axis
 
 @dataclass(frozen=True)
 class Take(Look):
-    """The exact motion of a scene, and the motions of several methods, for a picture.
+    """A picture of the exact motion of a scene and of the motions of several methods.
 
-    methods: (label, engine, steps between samples). samples: number of sampling intervals; None means that of the
-    scene.
+    methods: (label, engine, steps between samples). samples: number of sampling intervals; None selects the scene's
+    number.
     """
 
     scene: Scene
@@ -77,24 +78,24 @@ class Take(Look):
 
     @property
     def shown(self) -> slice:
-        """The samples in the picture, about FRAMES at most."""
+        """The samples in the picture; their number is at most about FRAMES."""
         return slice(0, None, max(1, -(-(self.sample_count + 1) // (FRAMES + 1))))
 
 
 @dataclass(frozen=True)
 class Shown:
-    """The motions of a take at the instants of an animation."""
+    """The motions of `take` at the times of an animation."""
 
     take: Take
     mechanism: Mechanism
     t: Array  # (frames,) s
     truth: Trajectory
-    motions: Mapping[str, Array]  # Label -> poses (frames, bodies, 3), NaN after the method has failed.
+    motions: Mapping[str, Array]  # Label -> poses (frames, bodies, 3), which are NaN after the method has failed.
     missing: Mapping[str, str]  # Label -> reason.
 
 
 def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
-    """Return the motions of a take; `missing` has the methods without a stored motion."""
+    """Return the motions of a take. `missing` contains the methods without a stored motion."""
     motions: dict[str, Array] = {}
     missing: dict[str, str] = {}
     spacing = take.scene.duration / take.sample_count
@@ -109,7 +110,7 @@ def shown(take: Take, answers: Mapping[Any, Answer]) -> Shown:
 
 
 def animation(shown: Shown, title: str) -> str:
-    """Return an animated SVG; a reader without animations sees the first frame."""
+    """Return an animated SVG. A reader without animations sees the first frame."""
     keys = np.unique(np.linspace(0, len(shown.t) - 1, KEYS).round().astype(int))
     with settings():
         figure, moving, growing = _figure(shown, title, LIGHT, 72)  # matplotlib's SVG has 72 points per inch
@@ -138,8 +139,8 @@ def animation(shown: Shown, title: str) -> str:
 def _keyframes(label: str, places: Array) -> str:
     """Return the CSS that moves the elements with the id `label-...` through `places` (keys, 3).
 
-    The columns of `places` are x, y [pt] and the angle [degrees]. A place that is not finite is replaced by the
-    previous one.
+    The columns of `places` are x, y [pt] and the angle [degrees]. The previous place replaces a place that is not
+    finite.
     """
     frames = []
     x0, y0, first = last = places[0]
@@ -157,13 +158,13 @@ def _keyframes(label: str, places: Array) -> str:
 
 
 def _looks(shown: Shown, theme: Theme) -> list[tuple[str, float, Any]]:
-    """Colour, width and dashes of each motion; engines differ by colour."""
+    """The colour, width and dashes of each motion. Engines have different colours."""
     roles = [role(family_of(engine.name)) for label, engine, _ in shown.take.methods if label in shown.motions]
     return [(getattr(theme, colour), *look) for colour, look in zip(roles, LOOKS, strict=False)]
 
 
 def decades(errors: Sequence[Array]) -> tuple[int, int]:
-    """Return the powers of ten (low, high) of the error axis; it covers most samples of each method."""
+    """Return the lowest and the highest power of ten of the error axis, which covers most samples of each method."""
     positive = [error[np.isfinite(error) & (error > 0)] for error in errors]
     positive = [error for error in positive if len(error)] or [np.ones(1)]
     high = int(np.ceil(np.log10(max(error.max() for error in positive))))
@@ -197,7 +198,7 @@ def film(shown: Shown, title: str, path: Path, theme: Theme = LIGHT) -> None:
 
 
 def ffmpeg() -> str:
-    """Return the path of the installed ffmpeg, or of imageio-ffmpeg's. Raises BadInput if both are missing."""
+    """Return the path of the installed ffmpeg or of that in imageio-ffmpeg. Raises BadInput if both are missing."""
     installed = shutil.which("ffmpeg")
     if installed is not None:
         return installed

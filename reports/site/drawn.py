@@ -1,4 +1,4 @@
-"""The drawing of a mechanism: SVG elements of each body, and the joints as numbers for a page."""
+"""The drawing of a mechanism, with SVG elements for each body and with numbers of the joints."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from reports.site.live.sliders import Look, Point
 Array = NDArray[np.float64]
 
 # Sizes as fractions of the mechanism's length scale.
-BLOCK = 0.07  # Half the side of a body without joints and ends.
+BLOCK = 0.07  # Half the side of a rectangle for a body without joints and ends.
 PIN = 0.018  # Radius of a pin.
 BLADE = 0.16  # Length of a blade.
 SUPPORT = 0.05  # Half the width of a support.
@@ -44,7 +44,7 @@ def placed(pose: Sequence[float]) -> str:
 
 @dataclass(frozen=True)
 class Stroke:
-    """A line of a drawing: its kind, which selects its style, and its points (points, 2) [m]."""
+    """A line of a drawing with points (points, 2) [m]. `kind` selects its style."""
 
     kind: str
     points: Array
@@ -52,7 +52,7 @@ class Stroke:
 
     @property
     def outline(self) -> Array:
-        """The points; a closed line repeats its first point at the end."""
+        """The points; the first point of a closed line is repeated at the end."""
         return np.vstack([self.points, self.points[:1]]) if self.closed else self.points
 
     def svg(self) -> str:
@@ -60,7 +60,7 @@ class Stroke:
 
 
 def body_lines(mechanism: Mechanism, look: Look, name: str) -> list[Stroke]:
-    """Return the lines of a body in its own frame, without its pins (see `pins_of`)."""
+    """Return the lines of a body in the body's frame. Pins are left out (see `pins_of`)."""
     size = mechanism.length_scale
     points: list[Point] = list(look.ends.get(name, ()))
     lines: list[Stroke] = []
@@ -111,7 +111,7 @@ def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
 
 
 def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
-    """Return supports, slots and curves of the ground; `pose` (times, bodies, 3) is the exact motion."""
+    """Return supports, slots and curves of the ground. `pose` (times, bodies, 3) is the exact motion."""
     size = mechanism.length_scale
     lines = []
     for joint in mechanism.joints:
@@ -132,7 +132,8 @@ def ground_lines(mechanism: Mechanism, look: Look, pose: Array) -> list[Stroke]:
 
 
 def rolled_on(joint: Roll, pose: Array, mechanism: Mechanism) -> Array:
-    """Return the part of the ground's curve on which a body rolls (points, 2) [m]; a closed curve is returned whole."""
+    """Return points (points, 2) [m] of the ground's curve where a body rolls on it. A closed curve is returned
+    whole."""
     curve = joint.rolling.ground
     low, high = curve.limits
     if np.isfinite(curve.length):
@@ -148,7 +149,7 @@ def point_path(pose: Array, point: Point | Array) -> Array:
 
 
 def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, float, float]:
-    """Return left, bottom, width and height [m] of the area that the exact motion covers, with a margin."""
+    """Return left, bottom, width and height [m] of the area of the exact motion with a margin."""
     corners = [
         point_path(pose[:, index], point)
         for index, body in enumerate(mechanism.bodies)
@@ -172,12 +173,12 @@ def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, fl
 
 
 def index_of(mechanism: Mechanism, name: str | None) -> int:
-    """Return the index of a body, -1 for the ground."""
+    """Return the index of a body, or -1 for the ground."""
     return -1 if name is None else mechanism.body_index(name)
 
 
 def measure_of(mechanism: Mechanism) -> Literal["angle", "position"]:
-    """Return the error that a page shows: "position" for mechanisms with skates, otherwise "angle"."""
+    """Return the quantity whose error a page shows, which is "position" for mechanisms with skates, else "angle"."""
     return "angle" if mechanism.holonomic.all() else "position"
 
 
@@ -198,7 +199,7 @@ def joints_of(mechanism: Mechanism) -> list[dict[str, Any]]:
 
 
 def between(mechanism: Mechanism, joint: Joint, pose: Array) -> tuple[Array, Array]:
-    """Return the poses (times, 3) of both bodies of a joint; those of the ground are zero."""
+    """Return the poses (times, 3) of both bodies of a joint. Poses of the ground are zero."""
     ground = np.zeros((len(pose), 3))
     names = (joint.first, joint.second)
     first, second = (ground if name is None else pose[:, mechanism.body_index(name)] for name in names)
@@ -206,7 +207,7 @@ def between(mechanism: Mechanism, joint: Joint, pose: Array) -> tuple[Array, Arr
 
 
 def place_of(joint: Joint, first: Array, second: Array) -> Array:
-    """Return the point (times, 2) [m] of a joint: the contact of a Roll, otherwise its point on the second body."""
+    """Return positions (times, 2) [m] of the contact of a Roll, or of another joint's point on the second body."""
     if isinstance(joint, Roll):
         return first[:, :2] + rotated(first[:, 2], joint.rolling.contact(second[:, 2] - first[:, 2]).point)
     return point_path(second, getattr(joint, "second_point", (0.0, 0.0)))
@@ -218,9 +219,9 @@ def loose(mechanism: Mechanism) -> list[Skate | Roll]:
 
 
 def required_friction(reaction: Array) -> Array:
-    """Return the friction coefficient (times,) [1] that rolling requires; reaction (times, 2): tangential, normal.
+    """Return the friction coefficient (times,) [1] that rolling requires. `reaction` (times, 2): tangential, normal.
 
-    A normal force that pulls gives NaN, since no coefficient is sufficient.
+    The result is NaN while the normal force pulls, since no coefficient is sufficient.
     """
     with np.errstate(all="ignore"):
         return np.where(reaction[:, 1] > 0, np.abs(reaction[:, 0]) / reaction[:, 1], np.nan)

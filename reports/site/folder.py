@@ -1,4 +1,4 @@
-"""Writing a site to a folder, and serving the folder by HTTP."""
+"""Writes a site to a folder, and serves the folder by HTTP."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def refuse_strangers(output: Path) -> None:
 
 
 def write_site(output: Path, files: Mapping[str, bytes]) -> int:
-    """Write all files to `output`, where they replace an earlier site, and return their compressed size [bytes].
+    """Write all files to `output` and return their compressed size [bytes]. An earlier site is replaced.
 
-    Raises FileTrouble if that fails; an earlier site is then unchanged.
+    Raises FileTrouble if writing fails; an earlier site is then unchanged.
     """
     refuse_strangers(output)
     parent = folder_for(output.absolute().parent, REMEDY)
@@ -45,12 +45,12 @@ def write_site(output: Path, files: Mapping[str, bytes]) -> int:
 
 
 def compressed_size(files: Mapping[str, bytes]) -> int:
-    """Return the sum of the sizes of the files after gzip [bytes]."""
+    """Return the total size of the files after gzip [bytes]."""
     return sum(len(gzip.compress(content, 9, mtime=0)) for content in files.values())
 
 
 class Quiet(SimpleHTTPRequestHandler):
-    """A handler without a log, with content types that do not depend on the system."""
+    """A request handler without a log. Its content types do not depend on the system."""
 
     extensions_map = {  # noqa: RUF012 (the base class has a mutable attribute too)
         **SimpleHTTPRequestHandler.extensions_map,
@@ -62,7 +62,7 @@ class Quiet(SimpleHTTPRequestHandler):
     }
 
     def send_head(self) -> Any:
-        """Answer 404 also to a name that no file can have, such as one with a zero byte."""
+        """Answer 404 also to an invalid file name, for example with a zero byte."""
         try:
             return super().send_head()
         except (ValueError, OSError):
@@ -74,7 +74,7 @@ class Quiet(SimpleHTTPRequestHandler):
 
 
 def server(folder: Path, port: int) -> ThreadingHTTPServer:
-    """A server of the folder for this machine; port 0 selects a free port. Raises BadInput if the port is in use."""
+    """A server that only this machine can reach. Port 0 selects a free port. Raises BadInput if the port is in use."""
     try:
         return ThreadingHTTPServer(("127.0.0.1", port), partial(Quiet, directory=str(folder)))
     except OSError as reason:

@@ -1,6 +1,6 @@
-"""The build by Sphinx with MyST and Furo: Markdown pages and docstrings become HTML with MathML and a search.
+"""Builds a site by Sphinx with MyST and Furo. Markdown pages and docstrings become HTML with MathML and a search.
 
-The lessons and the page of stored rows have their own templates.
+Lessons and the page of stored rows have other templates.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MODULE = "{name}\n{line}\n\n.. automodule:: {name}\n   :members:\n"
 # Kinds of Sphinx warnings that are ignored, since docstrings are plain text and headings skip levels.
 HARMLESS = ("docutils", "autodoc", "ref.", "toc.", "myst.header")
 
-# Templates of the sidebar; "lessons" is ours, the others belong to Furo.
+# Templates of the sidebar. "lessons" belongs to this package, the other templates to Furo.
 SIDEBAR = ("scroll-start", "brand", "search", "lessons", "navigation", "scroll-end")
 
 Extra = tuple[str, dict[str, Any], str]  # page, context, template
@@ -37,7 +37,7 @@ Extra = tuple[str, dict[str, Any], str]  # page, context, template
 
 @dataclass(frozen=True)
 class Documents:
-    """Files of a Sphinx project: `sources` are documents, `extra` are copied without a change."""
+    """Files of a Sphinx project. `sources` are documents, and `extra` are copied without a change."""
 
     sources: Mapping[str, bytes]
     extra: Mapping[str, bytes]
@@ -46,7 +46,7 @@ class Documents:
 
 
 def require_packages() -> None:
-    """Raise BadInput with the packages of the extra `site` that are missing."""
+    """Raise BadInput if packages of the extra `site` are missing."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         raise BadInput(f"the site needs packages that are not installed ({', '.join(missing)}): pip install '.[site]'")
@@ -59,7 +59,7 @@ def build_html(documents: Documents) -> tuple[dict[str, bytes], list[str]]:
     from sphinx.util.docutils import docutils_namespace  # pyright: ignore[reportMissingImports]
 
     with TemporaryDirectory() as folder, docutils_namespace(), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # deprecations of Sphinx that its theme and MyST still use
+        warnings.simplefilter("ignore")  # the theme and MyST use deprecated functions of Sphinx
         source, extra, out = (Path(folder) / name for name in ("source", "extra", "out"))
         write_files(source, documents.sources)
         write_files(extra, documents.extra)
@@ -83,7 +83,7 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def setup(app: Any) -> None:
-    """Register the renderer of formulas; Sphinx calls this function for each of its extensions."""
+    """Register the renderer of formulas. Sphinx calls this function because this module is an extension."""
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
 
 
@@ -110,7 +110,7 @@ def configure(extra: Path) -> dict[str, Any]:
         "html_show_copyright": False,
         "templates_path": [str(HERE / "templates")],
         "default_role": "code",
-        "smartquotes": False,  # headings are found by their words, and options have two hyphens
+        "smartquotes": False,  # headings are looked up by their text, and options have two hyphens
         "myst_enable_extensions": ["dollarmath"],
         "myst_dmath_allow_space": False,
         "myst_dmath_allow_digits": False,
@@ -126,7 +126,7 @@ def configure(extra: Path) -> dict[str, Any]:
 
 
 def furo_colours(theme: Theme) -> dict[str, str]:
-    """The colours of the charts as variables of Furo."""
+    """The colours of charts as variables of Furo."""
     return {
         "color-brand-primary": theme.ink,
         "color-brand-content": theme.second,
@@ -137,7 +137,7 @@ def furo_colours(theme: Theme) -> dict[str, str]:
 
 
 def colours() -> str:
-    """CSS with a variable for each role of a colour; the reader's choice overrides the system's colour scheme."""
+    """CSS with a variable for each role of a colour. The reader's choice overrides the system's colour scheme."""
     light, dark = (" ".join(f"--{f.name}: {getattr(theme, f.name)};" for f in fields(Theme)) for theme in (LIGHT, DARK))
     return (
         f":root {{ color-scheme: light dark; {light} }}\n"
@@ -162,7 +162,8 @@ def visit_block(translator: Any, node: Any) -> None:
 
 
 def quote_section(app: Any, page: str, heading: str) -> str | None:
-    """The HTML of a section of a results page, for a page in another folder; None without the section."""
+    """The HTML of a section of a results page, with links for a page in another folder; None if the section is
+    missing."""
     from docutils import nodes  # pyright: ignore[reportMissingImports]
 
     name = f"results/{page}"
@@ -181,7 +182,7 @@ def quote_section(app: Any, page: str, heading: str) -> str | None:
 
 
 def reference_sources() -> dict[str, bytes]:
-    """A document for each module, and their index; Sphinx fills the documents from docstrings."""
+    """A document for each module, and an index. Sphinx fills the documents from docstrings."""
     names = [*PACKAGES]
     for package in PACKAGES:
         names += [module.name for module in walk_packages([str(HERE.parents[1] / package)], f"{package}.")]
@@ -191,5 +192,5 @@ def reference_sources() -> dict[str, bytes]:
 
 
 def lighten(picture: str) -> str:
-    """An SVG with coordinates of lines rounded to a tenth of a point, which makes the file smaller."""
+    """A smaller SVG, in which coordinates of lines are rounded to a tenth of a point."""
     return LINE.sub(lambda found: LONG.sub(lambda digits: f"{float(digits[0]):.1f}", found[0]), picture)

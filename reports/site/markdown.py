@@ -1,4 +1,4 @@
-"""Conversions: Markdown to HTML, formulas to MathML, and the notebook of the lecture to Markdown.
+"""Conversions: Converts Markdown to HTML, formulas to MathML, and the notebook of the lecture to Markdown.
 
 The cells of the lecture run in a separate process; the page shows their output and pictures.
 """
@@ -57,7 +57,7 @@ def title(text: str) -> str:
 
 
 def section(text: str, heading: str) -> str | None:
-    """Return the section of a Markdown page with this heading, with subsections; None if the heading is missing."""
+    """Return a section of a Markdown page, including subsections; None if the heading is missing."""
     start, rank, fenced = None, 0, False
     lines = text.splitlines()
     for index, line in enumerate(lines):
@@ -76,7 +76,7 @@ def cards(links: list[tuple[str, str]]) -> str:
 
 
 def render_lecture(notebook: str) -> dict[str, str]:
-    """Return the page "lecture.md" and its pictures by name; the last cell contains the solutions and is collapsed.
+    """Return the page "lecture.md" and its pictures by name. The last cell has the solutions and is collapsed.
 
     Raises NotFetched if a cell fails.
     """
@@ -101,7 +101,7 @@ def render_lecture(notebook: str) -> dict[str, str]:
 
 
 def main() -> None:
-    """Run the cells in the standard input (JSON); write the output and the pictures of each cell as JSON."""
+    """Read cells as JSON from the standard input, run them, and write their output and pictures as JSON."""
     import matplotlib
 
     matplotlib.use("agg")

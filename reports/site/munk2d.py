@@ -1,7 +1,7 @@
-"""Munk2D, the engine inside pymunk, as WebAssembly: `python -m reports.site.munk2d` compiles it by emscripten.
+"""Munk2D, the engine in pymunk, as WebAssembly. `python -m reports.site.munk2d` compiles it by emscripten.
 
 The compiled file is part of the package, so `crosscheck site` needs no compiler. Its first line has the release of
-pymunk and a digest of what it was compiled from.
+pymunk and a digest of the sources.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from reports.site.packages import printed
 
 SHIM = Path(__file__).with_name("munk2d.c")
 COMPILED = SHIM.with_suffix(".js")
-COMPILING = 600  # s: timeout of emscripten, which builds its own library first.
-# At -O2 emscripten 3.1.6 of Debian fails in a later step.
+# s: timeout of emscripten, which builds its library first. At -O2 emscripten 3.1.6 of Debian fails in a later step.
+COMPILING = 600
 FLAGS = (
     *("-O1", "-DNDEBUG", "-sSINGLE_FILE=1", "-sMODULARIZE=1", "-sEXPORT_ES6=1", "-sENVIRONMENT=web,worker"),
     *("-sEXPORTED_FUNCTIONS=_munk_run,_malloc,_free", "-sALLOW_MEMORY_GROWTH=1", "-sFILESYSTEM=0"),
 )
-THREADED = "cpHastySpace.c"  # A source file that needs threads, which the page does not have.
+THREADED = "cpHastySpace.c"  # This source file needs threads, which the page does not have.
 
 
 def source_digest(release: str) -> str:
-    """Return the digest of munk2d.c, the flags of the compiler and the release of pymunk, which fixes Munk2D."""
+    """Return the digest of munk2d.c, of the compiler's flags and of pymunk's release, which determines Munk2D."""
     return digest(repr((release, SHIM.read_text(encoding="utf-8"), FLAGS)))
 
 
@@ -38,7 +38,7 @@ def compiled_from(text: str) -> tuple[str, str]:
 
 
 def compile_munk2d(release: str) -> str:
-    """Return Munk2D of a release of pymunk as one JavaScript file, which begins with the licence of Munk2D.
+    """Return a JavaScript file with Munk2D from a release of pymunk. It begins with the licence of Munk2D.
 
     Raises BadInput if pip cannot fetch the sources, NotFetched if emscripten fails.
     """

@@ -1,7 +1,7 @@
 """The npm packages of the site.
 
-The build fetches the packages, checks their digests and stores them in a folder `cache`. Pages fetch nothing from other
-servers. Without npm or a network the site is built without the packages.
+The build fetches the packages, checks their digests and stores them in the folder `cache`. Pages load nothing from
+other servers. Without npm or a network, the site is built without these packages.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 from reports.run.files import temporary_folder
 
 PATIENCE = 180  # s: timeout for one package.
-ANSWERING = 8  # s: timeout of a query to a registry; it is short, since the network may be missing.
+ANSWERING = 8  # s: timeout of a query to a registry. It is short, since the network may be missing.
 
 
 @dataclass(frozen=True)
@@ -39,12 +39,12 @@ class Package:
 
 
 class NotFetched(Exception):
-    """A file cannot be fetched or built; the message is the reason."""
+    """A file cannot be fetched or built. The message is the reason."""
 
 
 @functools.cache
 def npm_trouble(cache: Path) -> str:
-    """Return the reason why packages cannot be fetched; empty if they are in `cache` or npm's registry answers."""
+    """Return the reason why packages cannot be fetched, or "" if they are in `cache` or if npm's registry answers."""
     if all(package.path_in(cache).is_file() for package in PACKAGES):
         return ""
     npm = shutil.which("npm")
@@ -59,7 +59,7 @@ def npm_trouble(cache: Path) -> str:
 
 
 def fetch_package(package: Package, cache: Path) -> dict[str, bytes]:
-    """Return the package's files by their names in the site. Raises NotFetched."""
+    """Return the files of a package by their names in the site. Raises NotFetched."""
     path = package.path_in(cache)
     if not path.is_file():
         if trouble := npm_trouble(cache):
@@ -78,9 +78,8 @@ def fetch_package(package: Package, cache: Path) -> dict[str, bytes]:
 
 
 def printed(command: Sequence[str], trouble: str, patience: float, **given: Any) -> str:
-    """Return the output of a program.
-
-    Raises NotFetched if the program fails or takes longer than `patience` [s]. `trouble`: the start of the message.
+    """Return the output of a program. Raises NotFetched with a message that begins with `trouble` if the program fails
+    or takes longer than `patience` [s].
     """
     try:
         ended = subprocess.run(command, capture_output=True, encoding="utf-8", timeout=patience, **given)

@@ -1,4 +1,4 @@
-"""The lessons: their scenes and experiments; the text of each lesson is a Markdown file in this folder."""
+"""The lessons with their scenes and experiments. The text of a lesson is a Markdown file in this folder."""
 
 from engines import Engine
 from reference.scene import Scene
@@ -12,7 +12,7 @@ LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, PARKING, WHEELS, ROL
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:
-    """Return a take of a scene with these methods; it looks like the scene in the lesson that contains it."""
+    """Return a take of a scene with these methods. It has the look of the scene in a lesson."""
     plain = next((live for lesson in LESSONS for live in lesson.scenes if live.scene.name == scene.name), None)
     if plain is None:
         return Take(scene, methods)

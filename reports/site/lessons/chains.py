@@ -1,4 +1,4 @@
-"""The lesson on open and closed chains: a double pendulum, and a person on one foot or two."""
+"""The lesson on open and closed chains, with a double pendulum and a person on one foot or on two feet."""
 
 from __future__ import annotations
 

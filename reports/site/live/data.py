@@ -1,6 +1,6 @@
-"""The data that a page loads for a live scene: models, exact motions and drawings at every position of the sliders.
+"""The data of a live scene for a page: models, exact motions and drawings for each position of the sliders.
 
-The exact motions and Munk2D's spaces are doubles in base64. The motions of Python's engines are stored answers.
+The exact motions and Munk2D's spaces are doubles in base64. The motions of engines in Python are stored answers.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from reports.site.drawn import between, index_of, joints_of, loose, measure_of, 
 from reports.site.live.models import mujoco_text, space_of
 from reports.site.live.sliders import ENGINES, NAMES, Live, Name
 
-DIGITS = 6  # decimal places of forces and of their points
+DIGITS = 6  # decimal places of forces and their points
 PACKAGES: dict[Name, str] = {"munk": "pymunk", "mujoco": "mujoco-core"}
 
 
 def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
-    """Return the data of a live scene for JSON; lists over slider positions are in the order of `Live.places`.
+    """Return the data of a live scene for JSON. A list over slider positions has the order of `Live.places`.
 
-    The page integrates the equations of pinned linkages itself. For these mechanisms, the data contain the exact motion
-    only at the start positions of the sliders. The pose and the twist of a body are six numbers.
+    The page integrates the equations of pinned linkages. The data of these mechanisms contain the exact motion only for
+    the initial positions of the sliders. The pose and the twist of a body are six numbers.
     """
     mechanism = live.scene.mechanism()
     positions = [(scene, scene.mechanism()) for scene in live.places()]
@@ -87,7 +87,7 @@ def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _equations(mechanism: Mechanism) -> dict[str, Any]:
-    """Return the input of the page's exact solver without the joints."""
+    """Return the input of the page's exact solver, without the joints."""
     drives = [joint for joint in mechanism.joints if isinstance(joint, Drive)]
     return {
         "inertia": [value for body in mechanism.bodies for value in (body.mass, body.mass, body.inertia)],
@@ -106,7 +106,7 @@ def _equations(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
-    """Return the point [m] and the force [N] of each joint's reaction on its second body, as flat lists of pairs.
+    """Return the reaction of each joint on its second body: the point [m] and the force [N], as flat lists of pairs.
 
     A rolling contact also has the required friction coefficient [1]. A drive has no entry, since its reaction is a
     torque. `partly`: whether the motion determines only one component of the force.
@@ -133,13 +133,13 @@ def forces(mechanism: Mechanism, truth: Trajectory) -> list[dict[str, Any]]:
 
 
 def _listed(values: NDArray[np.float64]) -> list[float | None]:
-    """Return a flat list; numbers that are not finite or of at least 1e6 become None, since JSON has no NaN."""
+    """Return a flat list. Numbers of 1e6 or more and numbers that are not finite become None, since JSON has no NaN."""
     flat = np.asarray(values, dtype=float).ravel()
     return [round(value, DIGITS) + 0.0 if np.isfinite(value) and abs(value) < 1e6 else None for value in flat.tolist()]
 
 
 def _native(answer: Answer | None, method: Mapping[str, Any]) -> list[str] | None:
-    """Return the poses of Python's engine; with the twists if the page cannot run this method."""
+    """Return the poses of the engine in Python, and also its twists if the page cannot run this method."""
     if answer is None or not answer.finished:
         return None
     return [packed(answer.array(name)) for name in (("pose", "twist") if "why" in method else ("pose",))]
@@ -151,10 +151,10 @@ def packed(values: NDArray[np.float64]) -> str:
 
 
 def _models(name: Name, engine: Any, live: Live, mechanisms: Sequence[Mechanism]) -> dict[str, Any]:
-    """Return the models of the page's engine by slider position and step, or the reason why it cannot run them.
+    """Return the models of an engine by slider position and step, or the reason why the page cannot run the engine.
 
-    The list has one step if the model does not depend on the step. MuJoCo's model depends on the step if the stiffness
-    does, or if the mechanism has skates or rolling contacts.
+    The list has one step if the model does not depend on the step. The model of MuJoCo depends on the step if its
+    stiffness does, or if the mechanism has skates or rolling contacts.
     """
     steps = [live.scene.duration / steps for steps in live.steps]
     try:
@@ -170,7 +170,7 @@ def _models(name: Name, engine: Any, live: Live, mechanisms: Sequence[Mechanism]
 
 
 def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:
-    """Return the SVG elements of a picture; `pose` (times, bodies, 3) is the exact motion."""
+    """Return the SVG elements of a picture. `pose` (times, bodies, 3) is the exact motion."""
     x, y, width, height = drawn.box(mechanism, live, pose)
     return {
         "box": " ".join(drawn.number(value) for value in (x, -y - height, width, height)),
@@ -181,7 +181,7 @@ def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict
 
 
 def first_picture(live: Live) -> str:
-    """Return the SVG of the exact motion's start and paths, for readers without JavaScript."""
+    """Return an SVG with the initial pose and the paths of the exact motion, for readers without JavaScript."""
     mechanism = live.scene.mechanism()
     pose = live.scene.motion(np.linspace(0.0, live.scene.duration, live.frames + 1)).pose
     parts = drawing(live, mechanism, pose)
