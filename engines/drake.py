@@ -339,14 +339,12 @@ def _force_elements(model: DrakePlant) -> Any:
             self.DeclareAbstractOutputPort("forces", value.Clone, self._compute)
 
         def _compute(self, context: Any, output: Any) -> None:
-            state = self.get_input_port().Eval(context)
-            output.set_value(model.forces(*np.split(state, [plant.num_positions()])))
+            output.set_value(model.forces(*np.split(self.get_input_port().Eval(context), [plant.num_positions()])))
 
     return ForceElements()
 
 
 DEFAULT = Drake("default")
-TUNED = Drake("tuned", "runge_kutta5")
-CENIC = Drake("cenic", "cenic")
+TUNED, CENIC = Drake("tuned", "runge_kutta5"), Drake("cenic", "cenic")
 EXTENDED = Extrapolated(DEFAULT, "extended", levels=(1, 2, 3, 4), powers=(1, 2, 3))
 VARIANTS = (DEFAULT, TUNED, CENIC, EXTENDED)

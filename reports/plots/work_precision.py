@@ -215,6 +215,8 @@ ENGINE_NAMES = {
     "drake": "Drake",
     "mujoco-warp": "MuJoCo Warp",
     "newton": "Newton",
+    "rapier": "Rapier",
+    "jolt": "Jolt",
     EXACT_SOLVER: "plain code, exact multipliers",
 }
 
