@@ -1,7 +1,7 @@
 """A person on one foot or two: a trunk, thighs and shanks as five links that fall without muscle torques.
 
-Coordinates, modes and the sources of the segments: "A person on one foot" in `reference/scenes/derivations.md`. The
-ankles are pins in the ground, at y = 0.
+`reference/scenes/derivations.md` has coordinates, modes and the sources of the segments. The ankles are pins in the
+ground, at y = 0.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ UPRIGHT = (math.pi / 2, math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2)
 
 @dataclass(frozen=True)
 class Segment(Valid):
-    """A body segment: its mass is a fraction of the person's mass, its length is a fraction of the height.
+    """A body segment, with its mass as a fraction of the person's mass and its length as a fraction of the height.
 
-    `centre` is the distance of the centre of mass from the upper joint (for the trunk: from the hip upwards),
-    `gyration` the radius of gyration about the centre of mass. Both are fractions of the segment's length.
+    `centre` is the distance of the centre of mass from the upper joint, or from the hip for the trunk. `gyration` is
+    the radius of gyration about the centre of mass. Both lengths are fractions of the segment's length.
     """
 
     mass: Fraction
@@ -40,7 +40,7 @@ class Segment(Valid):
     gyration: Fraction
 
 
-# Winter, table 4.1 (mass, centre from the proximal end, radius of gyration about it) and figure 4.1 (length).
+# Winter, table 4.1 (mass, centre from the proximal end, radius of gyration about the centre) and figure 4.1 (length).
 HEAD_ARMS_TRUNK = Segment(0.678, 0.288, 0.626, 0.496)
 THIGH = Segment(0.100, 0.245, 0.433, 0.323)
 SHANK = Segment(0.0465, 0.246, 0.433, 0.302)
@@ -49,15 +49,15 @@ SHANK_AND_FOOT = Segment(0.061, 0.246, 0.606, 0.416)
 
 @dataclass(frozen=True)
 class OneFoot(EmbeddedScene):
-    """Standing on the left foot: `mass` [kg] of the whole person, `height` [m], gravity [m/s^2].
+    """A person who stands on the left foot, with `mass` [kg], `height` [m] and gravity [m/s^2].
 
-    Angles [rad] at the start, from rest, of the upward lines ankle-knee, knee-hip and hip-shoulder from the upward
-    vertical, and of the lifted leg's hip-knee and knee-ankle from the downward vertical; all counter-clockwise.
+    The motion starts from rest. Angles [rad] are counter-clockwise. Those of `left_shank`, `left_thigh` and `trunk` are
+    from the upward vertical; those of the lifted leg's `right_thigh` and `right_shank` are from the downward vertical.
     """
 
     name: ClassVar[str] = "person_one_foot"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
-    max_durations: ClassVar[float] = 1.0  # later, the person would touch the ground, which is not modelled
+    max_durations: ClassVar[float] = 1.0  # contact with the ground, which is later, is not modelled
     mass: Positive = 75.0
     height: Positive = 1.75
     gravity: float = 9.81
@@ -76,12 +76,12 @@ class OneFoot(EmbeddedScene):
 
     @property
     def feet(self) -> float | None:
-        """Distance between the ankles on the ground [m]; None for one foot."""
+        """Distance between the ankles on the ground [m], or None for one foot."""
         return None
 
     @property
     def start(self) -> Array:
-        """The bodies' angles, and their rates, which are zero; x axes are directed away from the left ankle."""
+        """The bodies' angles and their rates of zero; x axes are directed away from the left ankle."""
         aside = [self.left_shank, self.left_thigh, self.trunk, self.right_thigh, self.right_shank]
         return np.concatenate([np.array(aside) + UPRIGHT, np.zeros(5)])
 
@@ -92,9 +92,9 @@ class OneFoot(EmbeddedScene):
 
     @cached_readonly
     def _behind(self) -> Array:
-        """Distance [m] (5,) of each body's centre of mass from its joint nearer to the left ankle, along its x axis."""
+        """Position [m] (5,) of each centre of mass on the body's x axis, from the joint nearer to the left ankle."""
         centres = np.array([segment.centre for segment in self.segments])
-        centres[:2] = 1 - centres[:2]  # the joint nearer to the left ankle is the lower one in the left leg
+        centres[:2] = 1 - centres[:2]  # in the left leg the lower joint is nearer to the left ankle
         return centres * self.lengths
 
     @cached_readonly
@@ -104,7 +104,7 @@ class OneFoot(EmbeddedScene):
 
     @cached_readonly
     def inertias(self) -> Array:
-        """(5,) [kg m^2] about the centres of mass."""
+        """Inertias (5,) about the centres of mass [kg m^2]."""
         gyration = np.array([segment.gyration for segment in self.segments]) * self.lengths
         return self.masses * gyration**2
 
@@ -114,10 +114,10 @@ class OneFoot(EmbeddedScene):
         return coordinates, np.broadcast_to(identity, (*coordinates.shape[:-1], 5, 5))
 
     def tangent(self, coordinates: Any) -> tuple[Any, Any]:
-        """Poses (..., 5, 3), and velocities T (..., 15, freedoms) of all bodies for a unit rate of each coordinate."""
+        """Poses (..., 5, 3), and velocities T (..., 15, freedoms) for a unit rate of each coordinate."""
         angle, turning = self.angle_rates(coordinates)
         cosine, sine = np.cos(angle), np.sin(angle)
-        # along[i, j]: the length on segment j of the path from the left ankle to the centre of mass of body i.
+        # along[i, j] is the length of segment j in the path from the left ankle to the centre of mass of body i.
         along = np.zeros((5, 5))
         along[1, 0] = along[2, 0] = along[3, 0] = along[4, 0] = self.lengths[0]
         along[2, 1] = along[3, 1] = along[4, 1] = self.lengths[1]
@@ -152,10 +152,12 @@ class OneFoot(EmbeddedScene):
 
 @dataclass(frozen=True)
 class TwoFeet(OneFoot):
-    """Standing on both feet, `stance` [m] between the ankles: a loop through the ground, with three freedoms.
+    """A person who stands on both feet, with `stance` [m] between the ankles. The loop through the ground has three
+    freedoms.
 
-    The start is given by the hip, at `hip_x` [m] from the left ankle and `hip_y` above it, and the trunk's angle; both
-    knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of reach.
+    The start is defined by the hip, at `hip_x` [m] from the left ankle and `hip_y` [m] above it, and by the trunk's
+    angle. Both knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of
+    reach.
     """
 
     name: ClassVar[str] = "person_two_feet"
@@ -196,11 +198,11 @@ class TwoFeet(OneFoot):
 
     @property
     def start(self) -> Array:
-        """Hip x and y [m], the trunk's angle [rad], and their rates, which are zero."""
+        """Hip x and y [m], the trunk's angle [rad], and their rates of zero."""
         return np.array([self.hip_x, self.hip_y, self.trunk + math.pi / 2, 0.0, 0.0, 0.0])
 
     def angle_rates(self, coordinates: Any) -> tuple[Any, Any]:
-        """See the base class. The rates w of a leg solve l1 n1 w1 + l2 n2 w2 = v_hip, with the segments' normals n."""
+        """The rates w1, w2 of a leg solve l1 n1 w1 + l2 n2 w2 = v_hip, with the segments' lengths l and normals n."""
         x, y, trunk = (coordinates[..., i] for i in range(3))
         lower, upper = self._leg(x, y)
         far_lower, far_upper = self._leg(x - self.stance, y)
@@ -210,7 +212,7 @@ class TwoFeet(OneFoot):
         turning[..., 2, 2] = 1
         shank, thigh = self.lengths[0], self.lengths[1]
         for first, second, a, b in ((0, 1, lower, upper), (4, 3, far_lower, far_upper)):
-            between = np.sin(b - a)  # zero for a straight knee, at which the hip can't be a coordinate
+            between = np.sin(b - a)  # zero for a straight knee, which has no solution
             turning[..., first, 0] = np.cos(b) / (shank * between)
             turning[..., first, 1] = np.sin(b) / (shank * between)
             turning[..., second, 0] = -np.cos(a) / (thigh * between)
@@ -218,10 +220,10 @@ class TwoFeet(OneFoot):
         return angle, turning
 
     def _leg(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Angles of ankle-knee and knee-hip for a hip at (x, y) from the ankle, the knee to the left of it (+1)."""
+        """Angles of shank (ankle to knee) and thigh (knee to hip) for a hip at (x, y) from the ankle."""
         shank, thigh = self.lengths[0], self.lengths[1]
-        # sqrt, not hypot, since the function must be analytic. The angle of (x, y) is measured from the vertical, so
-        # that it is continuous for a hip above the ground.
+        # sqrt is used instead of hypot, since the function must be analytic. The angle of (x, y) is measured from the
+        # vertical, so that it is continuous for a hip above the ground.
         square = x * x + y * y
         reach = np.sqrt(square)
         bearing = math.pi / 2 - np.arctan(x / y)
@@ -238,7 +240,8 @@ class TwoFeet(OneFoot):
 
 @dataclass(frozen=True)
 class SwayingOnOneFoot(OneFoot):
-    """Upright on one foot, with the lifted leg rotated by 0.1 rad; the start is on the mode of 9.3 rad/s.
+    """A person upright on one foot, with the lifted leg rotated by 0.1 rad. The start has the shape of the mode of 9.3
+    rad/s.
 
     The horizon is the time in which the unstable mode of the knee increases a difference tenfold.
     """
@@ -255,10 +258,10 @@ class SwayingOnOneFoot(OneFoot):
 
 @validated
 def modes_upright(person: OneFoot) -> tuple[Array, Array]:
-    """Squares s [1/s^2] (5,) ascending, and shapes (5, 5) in columns, of small motions u'' = s u about upright.
+    """Eigenvalues s [1/s^2] (5,), ascending, and shapes (5, 5) in columns of small motions u'' = s u about upright.
 
-    For s < 0 the mode swings at sqrt(-s) rad/s, for s > 0 it grows like e^(sqrt(s) t). Computed by finite differences
-    of the equations of motion.
+    For s < 0 the mode swings at sqrt(-s) rad/s, for s > 0 it grows like e^(sqrt(s) t). The linear equations are finite
+    differences of the equations of motion.
     """
     upright, rest = np.array(UPRIGHT), np.zeros(5)
 
@@ -269,8 +272,8 @@ def modes_upright(person: OneFoot) -> tuple[Array, Array]:
         ]
         return np.array(columns).T / (2 * step)
 
-    # Richardson extrapolation of central differences, whose error has even powers only. The steps balance rounding and
-    # the fifth derivative.
+    # Central differences have errors of even powers only and are extrapolated (Richardson). The steps balance rounding
+    # and truncation.
     solution: Any = eig((4 * slope(1e-4) - slope(2e-4)) / 3)
     values, vectors = solution
     order = np.argsort(values.real)

@@ -1,4 +1,4 @@
-"""Exact motions of a body on a pin, on a skate (Chaplygin's sleigh), on a slope, and at rest on several skates.
+"""Exact motions of a body on a pin, on one skate without and with a slope, and at rest on several skates.
 
 With u the skate's speed along i', w the turning rate, a the offset of the centre of mass ahead of the skate: u' = a
 w^2, (I + m a^2) w' = -m a u w (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m the
@@ -36,11 +36,10 @@ def one_body(scene: Scene, mass: float, inertia: float, joint: Pin | Skate, grav
 
 @dataclass(frozen=True)
 class PinnedBody(Scene):
-    """A body on a pin, which moves as a pendulum with frequency^2 = m g r / (I + m r^2).
+    """A body on a pin, which is a pendulum with frequency^2 = m g r / (I + m r^2).
 
-    mass [kg], inertia [kg m^2] about the centre of mass; the body's `point` [m], from there, is pinned at `pin` [m];
-    angle [rad] of the body and turning_rate [rad/s] at t = 0; gravity [m/s^2] in any direction, or none. Raises
-    InvalidMechanism for numbers not finite, or mass or inertia not positive.
+    mass [kg], inertia [kg m^2] about the centre of mass; `point` [m] of the body, from the centre of mass, is pinned at
+    `pin` [m]; angle [rad] of the body and turning_rate [rad/s] at t = 0; gravity [m/s^2] in any direction, or zero.
     """
 
     name: ClassVar[str] = "pinned_body"
@@ -54,16 +53,16 @@ class PinnedBody(Scene):
     turning_rate: float = 2.0
     gravity: Vector = (0.0, -9.81)
     duration: Positive = 3.0
-    horizon: Positive = 3.0  # an error of the energy causes a drift of the phase, linear in time
+    horizon: Positive = 3.0  # an error of the energy causes a phase error that is linear in time
 
     @cached_property
     def _lag(self) -> float:
-        """The pendulum's angle, from the direction of gravity, minus the body's [rad]."""
+        """The pendulum's angle from the direction of gravity minus the body's angle [rad]."""
         return math.atan2(-self.point[1], -self.point[0]) - math.atan2(self.gravity[1], self.gravity[0])
 
     @cached_property
     def frequency(self) -> float:
-        """The rate of small swings [rad/s]; zero without gravity, or for a pin at the centre of mass."""
+        """The rate of small swings [rad/s], which is zero without gravity or for a pin at the centre of mass."""
         arm, pull = math.hypot(*self.point), math.hypot(*self.gravity)
         return math.sqrt(self.mass * pull * arm / (self.inertia + self.mass * arm**2))
 
@@ -89,7 +88,7 @@ class PinnedBody(Scene):
 
 @dataclass(frozen=True)
 class FreelyPinnedBody(PinnedBody):
-    """The pinned body without gravity: its rate is constant."""
+    """The pinned body without gravity, whose rate is constant."""
 
     name: ClassVar[str] = "pinned_body_free"
 
@@ -100,10 +99,10 @@ class FreelyPinnedBody(PinnedBody):
 class ChaplyginSleigh(Scene):
     """Chaplygin's sleigh: a body that slides on one skate.
 
-    mass [kg], inertia [kg m^2] about the centre of mass, which is `offset` [m] ahead of the skate (negative: behind);
-    speed [m/s] of the skate along its heading and turning_rate [rad/s] at t = 0, of either sign or zero; start: the
-    skate's pose. With zero inertia, a point mass, there is a motion but no mechanism. Raises InvalidMechanism for
-    numbers not finite, mass not positive, or inertia and offset both zero.
+    mass [kg]; inertia [kg m^2] about the centre of mass, which is `offset` [m] ahead of the skate, or behind it if
+    negative; speed [m/s] of the skate along its heading and turning_rate [rad/s] at t = 0, of any sign; start: the
+    skate's pose. With zero inertia, a point mass, there is a motion but no mechanism. Raises InvalidMechanism if
+    inertia and offset are zero.
     """
 
     name: ClassVar[str] = "sleigh"
@@ -133,12 +132,12 @@ class ChaplyginSleigh(Scene):
 
     @cached_property
     def _top_speed(self) -> float:
-        """V, the speed of a straight motion with the same energy [m/s]."""
+        """The speed V of a straight motion with the same energy [m/s]."""
         return math.hypot(self.speed, self._arm * self.turning_rate)
 
     @cached_property
     def _phase(self) -> float:
-        """The constant c of a sleigh with a turning rate."""
+        """The constant c of the motion of a sleigh with a turning rate."""
         return math.asinh(self.speed / (self._arm * abs(self.turning_rate)))
 
     def growth_rate(self) -> float:
@@ -162,16 +161,16 @@ class ChaplyginSleigh(Scene):
 
     @validated
     def heading(self, t: ArrayLike) -> Array:
-        """theta at times t [rad, not wrapped]: the difference of Gudermannians k/a (gd p - gd c).
+        """theta [rad] at times t, not wrapped, from the difference of Gudermannians k/a (gd p - gd c).
 
-        It is computed without cancellation by gd(c + 2 s) - gd c = 2 atan(sinh s / cosh(c + s)).
+        The identity gd(c + 2 s) - gd c = 2 atan(sinh s / cosh(c + s)) has no cancellation.
         """
         t = np.asarray(t, dtype=float)
         if self.turning_rate == 0 or self.offset == 0:
             return self.start[2] + self.turning_rate * t
         half = 0.5 * self.offset * self._top_speed / self._arm**2 * t
         middle = np.abs(self._phase + half)
-        # |half| - |phase + half|, without the cancellation of a late time.
+        # This is |half| - |phase + half| without cancellation at late times.
         same = half * (self._phase + half) >= 0
         lead = np.sign(half) * np.where(same, -self._phase, self._phase + 2 * half)
         ratio = np.exp(lead) * -np.expm1(-2 * np.abs(half)) / (1 + np.exp(-2 * middle))
@@ -180,7 +179,7 @@ class ChaplyginSleigh(Scene):
 
     @cached_property
     def _settled(self) -> float:
-        """The time [s] from which the motion is straight to rounding, so that no quadrature is needed."""
+        """The time [s] after which the motion is straight to rounding and needs no quadrature."""
         phase = math.copysign(45 + 2 * math.log1p(self._arm / abs(self.offset)), self.offset)
         return max(0.0, (phase - self._phase) * self._arm**2 / (self.offset * self._top_speed))
 
@@ -208,7 +207,7 @@ class ChaplyginSleigh(Scene):
         return np.stack([x + np.real(moved), y + np.imag(moved), heading], axis=-1)
 
     def lateral_force(self, t: ArrayLike) -> Array:
-        """The skate's force on the body, to the left of its heading [N]: I u w / k^2."""
+        """The skate's force I u w / k^2 [N] on the body, to the left of the heading."""
         return self._lateral_force(*self.rates(self.times(t)))
 
     def _lateral_force(self, speed: Array, turning_rate: Array) -> Array:
@@ -230,25 +229,25 @@ class ChaplyginSleigh(Scene):
 
 @dataclass(frozen=True)
 class SleighBackwards(ChaplyginSleigh):
-    """The sleigh with its centre of mass behind the skate: a small turning rate grows until it has turned round."""
+    """The sleigh with its centre of mass behind the skate, in which a small turning rate grows until the sleigh has
+    turned round."""
 
     name: ClassVar[str] = "sleigh_backwards"
 
     speed: float = -1.0
     turning_rate: float = 1e-3
     duration: Positive = 10.0
-    horizon: Positive = 0.8  # 1 / growth rate; later, errors grow exponentially until the sleigh has reversed
+    horizon: Positive = 0.8  # 1 / growth rate, since errors then grow exponentially
 
 
 @dataclass(frozen=True)
 class SkateOnSlope(Scene):
     """A body with its skate under the centre of mass on an incline.
 
-    There is no moment, so theta = heading + turning_rate t, and along the blade u' = -gravity sin theta. The path is a
-    cycloid without mean descent (Neimark and Fufaev). With turning_rate 0 and the blade across the slope (heading 0)
-    the body is at rest, and the blade's force is m g. mass [kg], inertia [kg m^2]; gravity [m/s^2]: the component of g
-    along the incline, to -y; speed [m/s] along the blade at t = 0. Raises InvalidMechanism for numbers not finite, or
-    masses not positive.
+    No moment acts, so theta = heading + turning_rate t, and the speed along the blade has the rate u' = -gravity sin
+    theta. The path is a cycloid without mean descent (Neimark and Fufaev). With turning_rate 0 and the blade across the
+    slope (heading 0) the body is at rest, and the blade's force is m g. mass [kg], inertia [kg m^2]; gravity [m/s^2]
+    along the incline, to -y; speed [m/s] along the blade at t = 0.
     """
 
     name: ClassVar[str] = "skate_on_slope"
@@ -271,7 +270,7 @@ class SkateOnSlope(Scene):
         t = times
         first, rate = self.heading, self.turning_rate
         angle, half = first + rate * t, 0.5 * rate * t
-        # (cos theta - cos first)/rate = -t sin(first + half) sinc(half): no cancellation at a small rate.
+        # (cos theta - cos first)/rate = -t sin(first + half) sinc(half) has no cancellation at a small rate.
         chord = t * np.sinc(half / math.pi)
         speed = self.speed - self.gravity * chord * np.sin(first + half)
         x, y = self._path(t)
@@ -284,7 +283,8 @@ class SkateOnSlope(Scene):
         """x and y of the blade [m]: the integrals of u cos theta and u sin theta."""
         first, rate, pull = self.heading, self.turning_rate, self.gravity
         if abs(rate) * float(t.max(initial=0.0)) < 1:
-            # The closed form divides by the rate's square; within a radian, Gauss quadrature is exact to rounding.
+            # The closed form divides by the rate's square. For a rotation of less than a radian Gauss quadrature is
+            # exact to rounding.
             nodes, weights = np.polynomial.legendre.leggauss(12)
             when = 0.5 * t[..., None] * (1 + nodes)
             angle, half = first + rate * when, 0.5 * rate * when
@@ -292,7 +292,7 @@ class SkateOnSlope(Scene):
             share = 0.5 * t[..., None] * weights * speed
             return np.sum(share * np.cos(angle), axis=-1), np.sum(share * np.sin(angle), axis=-1)
         angle = first + rate * t
-        chord = 2 * np.sin(0.5 * rate * t) / rate  # of a circle with unit speed, along the mean heading
+        chord = 2 * np.sin(0.5 * rate * t) / rate  # chord of a circle at unit speed
         middle = first + 0.5 * rate * t
         # u = free + (pull/rate) cos theta, free = speed - (pull/rate) cos first.
         free = self.speed - pull / rate * math.cos(first)
@@ -307,8 +307,8 @@ class HeldBySkates(Scene):
     """A body at rest on a slope, on skates that remove all freedoms of velocity.
 
     Two skates always leave one freedom, since their axles intersect in the centre of rotation or are parallel. A third
-    skate removes this freedom. points [m] from the centre of mass, angles [rad] of the blades relative to the body;
-    gravity [m/s^2]: the component of g along the incline, to -y. Raises InvalidMechanism if a freedom remains.
+    skate removes this freedom. points [m] from the centre of mass; angles [rad] of the blades relative to the body;
+    gravity [m/s^2] along the incline, to -y. Raises InvalidMechanism if a freedom remains.
     """
 
     name: ClassVar[str] = "held_by_skates"

@@ -1,11 +1,12 @@
-"""The slider-crank in closed form, and its scenes: driven at a constant rate, free, and two in which methods fail.
+"""The slider-crank in closed form, with scenes of a driven crank, of a free crank, and two scenes in which methods
+fail.
 
 The crank turns about the origin; the slider moves along the line y = offset. With crank r, rod l, offset e and crank
-angle theta, the rod's angle beta follows from r sin(theta) + l sin(beta) = e, and x = r cos(theta) + l cos(beta). The
-two branches are cos(beta) > 0 (+1) and cos(beta) < 0 (-1).
+angle theta, the rod's angle beta follows from r sin(theta) + l sin(beta) = e, and x = r cos(theta) + l cos(beta).
+`branch` is the sign of cos(beta).
 
-The block has a slot at its centre of mass, and a drive of rate zero that keeps its angle. In the two scenes in which
-methods fail, a rod's end slides in the slot without a block, and a slider starts to move near a dead centre.
+The block slides with its centre of mass in a slot, and a drive of rate zero keeps its angle. Methods fail if a rod's
+end slides in the slot without a block, and if a slider starts to move near a dead centre.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ Array = NDArray[np.float64]
 class SliderCrank(Valid):
     """Crank and rod [m], the slot's height `offset` [m], and the `branch`, +1 or -1.
 
-    Raises InvalidMechanism unless the crank can turn fully, |offset| < rod - crank.
+    Raises InvalidMechanism unless the crank can turn fully, that is, |offset| < rod - crank.
     """
 
     crank: Positive
@@ -50,10 +51,9 @@ class SliderCrank(Valid):
             )
 
     def _rod(self, theta: Any) -> tuple[Any, Any]:
-        """sin(beta) and cos(beta), without checks of the argument.
+        """sin(beta) and cos(beta) without checks of the argument.
 
-        For a complex step the derivative of the cosine is explicit, since (1 - sine)(1 + sine) would round a small
-        sine.
+        For a complex step the derivative of the cosine is coded, since (1 - sine)(1 + sine) would round a small sine.
         """
         sine = (self.offset - self.crank * np.sin(theta)) / self.rod
         flat = np.real(sine)
@@ -62,7 +62,7 @@ class SliderCrank(Valid):
 
     @validated
     def rod_angle(self, theta: ArrayLike) -> Array:
-        """beta (...) [rad], from the crank pin to the slider, continuous in theta."""
+        """beta (...) [rad], the direction from the crank pin to the slider, continuous in theta."""
         sine, _ = self._rod(np.asarray(theta))
         return np.arcsin(sine) if self.branch == 1 else math.pi - np.arcsin(sine)
 
@@ -73,7 +73,7 @@ class SliderCrank(Valid):
 
     @validated
     def rates(self, theta: Complexes) -> tuple[Any, Any]:
-        """beta' [1] and x' [m] with respect to theta (...): r cos(theta) + l cos(beta) beta' = 0; analytic."""
+        """The derivatives of beta [1] and x [m] by theta (...), analytic."""
         return self._rates(theta)
 
     def _rates(self, theta: Any) -> tuple[Any, Any]:
@@ -82,9 +82,9 @@ class SliderCrank(Valid):
         return turn, -self.crank * np.sin(theta) - self.rod * sine * turn
 
     def dead_centres(self) -> tuple[float, float]:
-        """The crank angles [rad] at which crank and rod are in line: stretched, then folded.
+        """The crank angles [rad] at which crank and rod are in line, first stretched and then folded.
 
-        There x' = 0, so the slider can't drive the crank.
+        The slider can't drive the crank there, since x' = 0.
         """
         stretched = math.asin(self.offset / (self.rod + self.crank))
         folded = math.pi + math.asin(self.offset / (self.rod - self.crank))
@@ -177,12 +177,12 @@ class DrivenSliderCrank(EmbeddedScene):
         return self.embedded(*self._states(times), np.zeros((len(times), 1)) if self.driven else None)[1:]
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound (times,) on the error of the motion [rad, rad/s], by two rules; zero for a prescribed motion."""
+        """A bound (times,) on the error of the motion [rad, rad/s], which is zero for a prescribed motion."""
         return np.zeros(len(self.times(t))) if self.driven else super().truth_error(t)
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """+1 if the slider is to the right of the crank pin, -1 if to the left: the sign of cos(beta)."""
-        pin = 2 * pose[..., 0, 0]  # the crank's centre is halfway out to its pin
+        """The sign of cos(beta): +1 if the slider is to the right of the crank pin, -1 if it is to the left."""
+        pin = 2 * pose[..., 0, 0]  # the crank's centre is halfway to its pin
         return np.sign(pose[..., 2, 0] - pin).astype(int)
 
 
@@ -193,7 +193,7 @@ class FreeSliderCrank(DrivenSliderCrank):
     name: ClassVar[str] = "free_slider_crank"
     driven: ClassVar[bool] = False
     duration: Positive = 2.0
-    horizon: Positive = 2.0  # one freedom: an error of the energy causes a drift of the phase, linear in time
+    horizon: Positive = 2.0  # an error of the energy causes a phase error that is linear in time
 
 
 @dataclass(frozen=True)
@@ -224,9 +224,9 @@ class RodEndInSlot(DrivenSliderCrank):
 
 @dataclass(frozen=True)
 class SliderAtDeadCentre(FreeSliderCrank):
-    """Released at rest near the outer dead centre, under gravity along the slot.
+    """The slider-crank released at rest near the outer dead centre, under gravity along the slot.
 
-    At the dead centre itself it would stay at rest; `angle` [rad] determines when and to which side it leaves.
+    It would stay at rest at the dead centre. `angle` [rad] determines when and to which side it moves away.
     """
 
     name: ClassVar[str] = "slider_at_dead_centre"
@@ -237,7 +237,7 @@ class SliderAtDeadCentre(FreeSliderCrank):
 
     @property
     def angle_unit(self) -> float:
-        """The angle [rad] from the dead centre at the start; errors are proportional to it."""
+        """The angle [rad] from the dead centre at the start, to which errors are proportional."""
         return min(1.0, abs(self.angle)) or 1.0
 
     def mechanism(self) -> Mechanism:
@@ -246,12 +246,12 @@ class SliderAtDeadCentre(FreeSliderCrank):
 
 @dataclass(frozen=True)
 class SlottedLever(PlacedScene):
-    """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; its pin slides in a straight slot of the lever.
+    """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; the crank's pin slides in a straight slot of the
+    lever.
 
-    crank and lever [m], the lever's pivot at (-distance, 0) [m]; uniform bars of crank_mass and lever_mass [kg];
-    gravity [m/s^2] downwards. The slot begins at the lever's pivot, at the angle `slant` [rad] to the lever's bar, so
-    that the bar's centre of mass is not on it. Raises InvalidMechanism unless the crank is shorter than the distance,
-    so that the lever swings.
+    Lengths `crank` and `lever` [m]; the lever's pivot is at (-distance, 0) [m]; masses of uniform bars [kg]; gravity
+    [m/s^2] downwards. The slot begins at the lever's pivot, at the angle `slant` [rad] to the lever's bar, so that the
+    bar's centre of mass is not on the slot. Raises InvalidMechanism unless crank < distance, so that the lever swings.
     """
 
     name: ClassVar[str] = "slotted_lever"
@@ -279,10 +279,10 @@ class SlottedLever(PlacedScene):
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         theta = self.angle + self.rate * times
         crank = self.crank * np.exp(1j * theta)
-        reach = self.distance + crank  # From the lever's pivot to the pin; its real part is positive.
+        reach = self.distance + crank  # Vector from the lever's pivot to the crank's pin, with a positive real part.
         turning, bending = self.rate * 1j * crank / reach, -(self.rate**2) * crank / reach  # P'/reach and P''/reach.
         angle, rate = np.angle(reach), turning.imag
-        # log(reach)'' = P''/reach - (P'/reach)^2, and its imaginary part is the angle's.
+        # The imaginary part of log(reach)'' = P''/reach - (P'/reach)^2 is the angle's second derivative.
         acceleration = (bending - turning**2).imag
         bar = 0.5 * self.lever * np.exp(-1j * self.slant) * reach / np.abs(reach)
         zero = np.zeros_like(times)

@@ -28,10 +28,10 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-# Jacobi's elliptic functions are computed from the complementary parameter n = 1 - m with the parameter m = k^2, so
-# that they are accurate near the separatrix, m = 1: there the motion depends on the logarithm of n, which can't be
-# computed from a rounded m. Method: the arithmetic-geometric mean; R. Bulirsch, "Numerical calculation of elliptic
-# integrals and elliptic functions", Numerische Mathematik 7 (1965) 78-90.
+# Jacobi's elliptic functions are computed from the complementary parameter n = 1 - m with the parameter m = k^2. Near
+# the separatrix, m = 1, the motion depends on the logarithm of n, which can't be computed from a rounded m. The method
+# is the arithmetic-geometric mean (R. Bulirsch, "Numerical calculation of elliptic integrals and elliptic functions",
+# Numerische Mathematik 7 (1965) 78-90).
 
 # Relative difference of two iterates of the mean at which the iteration ends. The convergence is quadratic, so that the
 # relative error is then the square of this number.
@@ -53,7 +53,7 @@ def incomplete(sine: ArrayLike, cosine: ArrayLike, complement: float) -> Array:
     sine, cosine = np.asarray(sine, dtype=float), np.asarray(cosine, dtype=float)
     size = np.hypot(sine, cosine)
     sine, cosine = sine / size, cosine / size
-    # cos^2 + n sin^2 is 1 - m sin^2 without its cancellation.
+    # cos^2 + n sin^2 equals 1 - m sin^2 and has no cancellation.
     within = sine * elliprf(cosine**2, cosine**2 + complement * sine**2, 1.0)
     if complement == 0:
         return within
@@ -70,7 +70,7 @@ def jacobi(argument: ArrayLike, complement: float) -> tuple[Array, Array, Array,
     half_turns = np.round(argument / (2 * quarter))
     rest = argument - 2 * quarter * half_turns
     sign = np.where(half_turns % 2 == 0, 1.0, -1.0)
-    # Beyond K/2 the functions are computed from K - argument, for the relative accuracy of cn and dn near K.
+    # For arguments beyond K/2, K - argument is used, so that cn and dn have a small relative error near K.
     far = np.abs(rest) > quarter / 2
     sine, cosine, delta = _first_quarter(np.where(far, quarter - np.abs(rest), np.abs(rest)), complement)
     root = math.sqrt(complement)
@@ -174,7 +174,7 @@ class Pendulum(Valid):
         speed, start, complement = self._elliptic
         t, cycles = np.asarray(t, dtype=float), np.zeros(np.shape(t))
         if math.isfinite(self.period):
-            within = np.remainder(t, self.period)  # exact in floating point, apart from the period's rounding
+            within = np.remainder(t, self.period)  # only the period is rounded
             t, cycles = within, np.round((t - within) / self.period)
         sn, cn, dn, amplitude = jacobi(speed * t + start, complement)
         if self.excess > 0:
@@ -187,7 +187,7 @@ class Pendulum(Valid):
 
     @validated
     def passages(self, angle: float, until: NonNegative) -> Array:
-        """The times [s] in [0, until] at which the pendulum is at `angle` [rad] plus any number of whole turns."""
+        """The times [s] in [0, until] at which the pendulum's angle is `angle` [rad] plus any number of whole turns."""
         direction, *_ = self._start
         speed, start, complement = self._elliptic
         rest = direction * math.remainder(angle, 2 * math.pi)
@@ -228,11 +228,11 @@ class BarPendulum(Scene):
     angle: float = 2.0
     rate: float = 0.0
     duration: Positive = 10.0
-    horizon: Positive = 10.0  # not chaotic: an error of the energy causes a drift of the phase, linear in time
+    horizon: Positive = 10.0  # an error of the energy causes a phase error that is linear in time
 
     @cached_property
     def pendulum(self) -> Pendulum:
-        """The bar's angle: f^2 = m g (l/2) / (m l^2/3)."""
+        """The pendulum of the bar's angle with f^2 = m g (l/2) / (m l^2/3)."""
         return Pendulum(math.sqrt(1.5 * self.gravity / self.length), self.angle, self.rate)
 
     def mechanism(self) -> Mechanism:
@@ -275,11 +275,11 @@ class PointPendulum(BarPendulum):
 
     @property
     def samples(self) -> int:
-        """Two samples per second, as in the benchmark."""
+        """The benchmark has two samples per second."""
         return max(1, round(2 * self.duration))
 
     @validated
     def bob(self, pose: Poses) -> Array:
-        """Position of the point mass (..., 2) [m] for poses (..., 1, 3): at 2/3 of the bar from the pin."""
+        """Position of the point mass (..., 2) [m] for poses (..., 1, 3), which is at 2/3 of the bar from the pin."""
         angle = pose[..., 0, 2] + math.pi / 2
         return pose[..., 0, :2] + (2 / 3 - 1 / 2) * self.length * direction_of(angle)

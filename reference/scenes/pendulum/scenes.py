@@ -1,4 +1,4 @@
-"""Pendulums of 2, 10, 100 and any number of links, and a rotating ring of links, for measurements of cost."""
+"""Pendulums with any number of links, and a rotating ring of links."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ Array = NDArray[np.float64]
 class LinkPendulum(Scene):
     """`links` uniform bars, each of `length` [m] and `mass` [kg]; the last is `tip` times heavier.
 
-    All start at the same `angle` [rad] from the downward vertical and `rate` [rad/s]. The horizon is measured
-    (`Chain.horizon`): until then a small difference grows less than tenfold.
+    All start at the same `angle` [rad] from the downward vertical and `rate` [rad/s]. A small difference grows less
+    than tenfold up to the horizon, which `Chain.horizon` measures.
     """
 
     name: ClassVar[str] = "pendulum_2"
     source: ClassVar[str] = "problems 18.5.1 and 18.5.2; section 18.5, closed kinematic chains: a double pendulum"
-    # The motion is chaotic: after this time the reference motion of two links has lost half of its digits.
+    # After this time the chaotic reference motion of two links has lost half of its digits.
     max_durations: ClassVar[float] = 2.0
     links: Count = 2
     length: Positive = 1.0
@@ -115,13 +115,14 @@ class OpenChain(Mechanism):
 
     @validated
     def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:
-        """One angle for each body, at any pose."""
+        """Every pose has one freedom for each body."""
         return len(self.bodies), len(self.bodies)
 
     def reactions_of(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """The reaction of pin i is the sum of mass times acceleration of all bodies below it (..., rows) [N]."""
+        """Reactions (..., rows) [N]: that of pin i is the sum of mass times acceleration of all bodies below the
+        pin."""
         momentum_rates = inertias[:, :2] * excess[..., :2]
         sums = np.flip(np.cumsum(np.flip(momentum_rates, axis=-2), axis=-2), axis=-2)
         return sums.reshape((*sums.shape[:-2], self.row_count))
@@ -129,7 +130,7 @@ class OpenChain(Mechanism):
 
 @dataclass(frozen=True)
 class LongPendulum(LinkPendulum):
-    """`links` bars of a metre and a kilogram, released in line from horizontal, for a time without chaos."""
+    """`links` bars of 1 m and 1 kg in line are released from horizontal. The duration is too short for chaos."""
 
     name: ClassVar[str] = "pendulum_n"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a pendulum of 1, 2 and 100 links, and more"
@@ -143,9 +144,9 @@ class LongPendulum(LinkPendulum):
 
 @dataclass(frozen=True)
 class SpinningRing(PlacedScene):
-    """`links` uniform bars of `length` [m] and `mass` [kg] in a ring, turning at `rate` [rad/s]; no gravity.
+    """A ring of `links` uniform bars, each of `length` [m] and `mass` [kg], turns at `rate` [rad/s] without gravity.
 
-    Raises InvalidMechanism for fewer than three links. The horizon is the duration: a ring under tension is stable.
+    Raises InvalidMechanism for fewer than three links. A ring under tension is stable, so the horizon is the duration.
     """
 
     name: ClassVar[str] = "spinning_ring"
@@ -158,7 +159,7 @@ class SpinningRing(PlacedScene):
     horizon: Positive = 1.0
 
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
-        inner = self.length / (2 * math.tan(math.pi / self.links))  # from the middle to the middle of a chord
+        inner = self.length / (2 * math.tan(math.pi / self.links))  # from the ring's centre to the middle of a chord
         where = 2 * math.pi * np.arange(self.links) / self.links + self.rate * times[:, None]
         outwards = np.stack([np.cos(where), np.sin(where)], axis=-1)
         onwards = np.stack([-np.sin(where), np.cos(where)], axis=-1)

@@ -1,4 +1,4 @@
-"""A body that rolls under gravity: its motion with one freedom, its forces, and the times of hops and slips."""
+"""The motion of a body that rolls under gravity, its forces, and the times of hops and slips."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True)
 class RollingBody(Valid):
-    """One body rolling on fixed ground under gravity, in the one coordinate theta.
+    """One body that rolls on fixed ground under gravity, described by the coordinate theta.
 
-    M(theta) theta'' + M'(theta) theta'^2 / 2 = -V'(theta), with M = inertia + mass r^2, r the distance from the contact
-    to the centre of mass, V = mass g height. The ideal contact can also pull (N < 0) and never slips, so a real body
+    M(theta) theta'' + M'(theta) theta'^2 / 2 = -V'(theta), with M = inertia + mass r^2 and V = mass g height; r is the
+    distance from the contact to the centre of mass. The ideal contact can pull (N < 0) and never slips, so a real body
     moves differently after `hop` or `slip`.
 
-    mass [kg]; inertia [kg m^2] about the centre of mass, the origin of the rolling's body curve; gravity [m/s^2]; start
-    rate [rad/s]; the start angle is that of the rolling.
+    mass [kg]; inertia [kg m^2] about the centre of mass; gravity [m/s^2]; start_rate [rad/s]. The centre of mass is the
+    origin of `rolling.body`, and the start angle is `rolling.theta`.
     """
 
     rolling: Rolling
@@ -53,13 +53,13 @@ class RollingBody(Valid):
     def _angular_acceleration(self, contact: Contact, rate: Array) -> Array:
         arm = contact.arm
         inertia = self.inertia + self.mass * np.sum(arm**2, axis=-1)
-        # M'/2 = m r r', and r r' = -s' r . e_t, since rotation does not change r, but the advance of the contact does.
+        # M'/2 = m r r' and r r' = -s' dot(r, e_t), since only the advance of the contact changes r.
         half_slope = -self.mass * contact.rate * np.sum(arm * contact.tangent, axis=-1)
         pull = self.mass * (arm[..., 0] * self.gravity[1] - arm[..., 1] * self.gravity[0])
         return (pull - half_slope * rate**2) / inertia
 
     def _rates(self, state: Array) -> Array:
-        """d/dt of (theta, theta'); NaN beyond the limits of the rolling, so that the integrator reduces its step."""
+        """d/dt of (theta, theta'), or NaN beyond the limits of the rolling, so that the integrator reduces its step."""
         theta, rate = state[..., 0], state[..., 1]
         low, high = self.rolling.limits
         finite = np.isfinite(theta) & np.isfinite(rate)
@@ -74,12 +74,12 @@ class RollingBody(Valid):
 
     @cached_property
     def _beyond(self) -> list[float]:
-        """The rotation [rad] of the integrator's stage farthest beyond the limits; None without such a stage."""
+        """The rotation [rad] farthest beyond the limits in a stage of the integrator; empty without such a stage."""
         return []
 
     @contextmanager
     def _rolling_on(self) -> Iterator[None]:
-        """Raise the error of the rolling if an integration fails at a limit of the rolling."""
+        """If an integration fails at a limit of the rolling, raise the error that names the limit."""
         try:
             yield
         except IntegrationFailed:
@@ -89,7 +89,8 @@ class RollingBody(Valid):
 
     @cached_readonly
     def _units(self) -> Array:
-        """The units of theta and theta'. Near an equilibrium, the rounding of the start angle limits the accuracy."""
+        """The units of theta and theta'. The unit of theta' is at least the rate that a rounding of the start angle
+        causes near an equilibrium."""
         uncertain = np.finfo(float).eps * self._pace_of_rest / gauss.WINDOW_TOLERANCE
         return np.maximum(units_of_motion(self._rates, self.start), [0.0, uncertain])
 
@@ -98,7 +99,7 @@ class RollingBody(Valid):
         return []
 
     def states(self, t: ArrayLike) -> tuple[Array, Array]:
-        """theta [rad] and theta' [rad/s] (times,) at times t >= 0 [s], any order."""
+        """theta [rad] and theta' [rad/s] (times,) at times t >= 0 [s] in any order."""
         t = sample_times("rolling body", t)
         until = float(t.max(initial=0.0)) or math.ulp(1.0)
         # The motion is cached, since samples and searches use many times.
@@ -109,13 +110,13 @@ class RollingBody(Valid):
         return states[:, 0], states[:, 1]
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound on the error of theta and theta' (times,) [rad, rad/s], from a coarser rule."""
+        """A bound (times,) on the error of theta and theta' [rad, rad/s], from the difference to a coarser rule."""
         times = sample_times("rolling body", t)
         with self._rolling_on():
             return gauss.error_of(self._rates, self.start, times, self._units)
 
     def forces(self, t: ArrayLike) -> tuple[Array, Array]:
-        """T along e_t and N along e_n (times,) [N], on the body at the contact."""
+        """The contact's forces T along e_t and N along e_n (times,) [N] on the body."""
         tangent, normal, _ = self._forces(t)
         return tangent, normal
 
@@ -131,7 +132,7 @@ class RollingBody(Valid):
         return np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1), size
 
     def required_friction(self, t: ArrayLike) -> Array:
-        """|T| / N (times,): the friction coefficient that rolling needs; infinite if the contact must pull."""
+        """The friction coefficient |T| / N (times,) that rolling needs, which is infinite if the contact must pull."""
         tangent, normal = self.forces(t)
         with np.errstate(divide="ignore"):
             return np.where(normal > 0, np.abs(tangent) / np.where(normal > 0, normal, 1.0), np.inf)
@@ -143,15 +144,16 @@ class RollingBody(Valid):
 
     @validated
     def slip(self, friction: Positive, until: Positive) -> float | None:
-        """The first instant [s] before `until` at which |T| exceeds friction N, not later than a hop, or None."""
+        """The first instant [s] before `until` at which |T| exceeds friction * N, or None. It is not later than a
+        hop."""
         return self._first(((-1.0, friction), (1.0, friction)), until)
 
     def _first(self, parts: Sequence[tuple[float, float]], until: float) -> float | None:
-        """The first instant at which a T + b N is negative for one of the pairs (a, b) in `parts`; None if never.
+        """The first instant at which a T + b N is negative for a pair (a, b) of `parts`, or None.
 
-        The motion is integrated in intervals of doubling length, so that its late part is not needed if the instant is
-        early. Forces are functions of the angle by conservation of energy, so the search ends when the body has turned
-        back twice, or has rolled once round on level ground.
+        The motion is integrated in intervals of doubling length, so that an early instant needs only an early part of
+        the motion. Forces are functions of the angle by conservation of energy, so the search ends after the body has
+        turned back twice or, on level ground, rolled through a whole turn.
         """
 
         def spare(t: Array) -> tuple[Array, Array]:
@@ -180,14 +182,14 @@ class RollingBody(Valid):
 
     @property
     def _short(self) -> float:
-        """A time [s] in which the state changes little, by the rate, acceleration and stiffness at the start."""
+        """A time [s] in which the state changes little, from the rate, acceleration and stiffness at the start."""
         theta, rate = self.start
         pull = math.sqrt(abs(float(self.angular_acceleration(theta, rate))))
         return 1 / (max(abs(rate), pull, self._pace_of_rest) or 1.0)
 
     @property
     def _pace_of_rest(self) -> float:
-        """The rate [1/s] of the exponential growth or of the oscillation about an equilibrium at the start angle."""
+        """The rate [1/s] of growth or oscillation of small motions if the start angle were an equilibrium."""
         theta, _ = self.start
         mass = self.inertia + self.mass * float(np.sum(self.rolling.contact(theta).arm ** 2))
         return math.sqrt(abs(float(self.stiffness(theta))) / mass)
@@ -202,7 +204,8 @@ class RollingBody(Valid):
 
     @validated
     def small_frequency(self, equilibrium: float) -> float:
-        """sqrt(V'' / M) [rad/s] of small oscillations about a rest; InvalidMechanism if the rest is unstable."""
+        """The rate sqrt(V'' / M) [rad/s] of small oscillations. Raises InvalidMechanism if the equilibrium is
+        unstable."""
         stiffness = float(self.stiffness(equilibrium))
         if not stiffness > 0:
             raise InvalidMechanism(

@@ -25,14 +25,15 @@ from reference.validators import from_to, of_shape
 
 @dataclass(frozen=True)
 class EllipticGears(Scene):
-    """The first gear turns at a constant rate about its focus at the origin, the second about its own at (2a, 0).
+    """The first gear turns at a constant rate about its focus at the origin; the second gear turns about its focus at
+    (2a, 0).
 
     The sum of the distances from the contact to the two pins is always 2a, so the contact is on the line of the pins,
     and tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2). The ratio of the rates varies between (1 + e) / (1 - e)
     and its inverse. Gears are uniform discs, described at their centres.
 
-    The pins already fix the distance of the gears, so the motion does not determine a force along the line of the pins:
-    the reactions of these rows are NaN.
+    The motion does not determine the forces along the line of the pins, since the pins also fix the distance of the
+    gears. The reactions of these rows are NaN.
     """
 
     name: ClassVar[str] = "elliptic_gears"
@@ -48,7 +49,8 @@ class EllipticGears(Scene):
 
     @property
     def samples(self) -> int:
-        """A fifth of the usual number, since a contact of two ellipses costs ten times as much as one of circles."""
+        """A fifth of the usual number, since a contact of two ellipses costs ten times as much as a contact of
+        circles."""
         return max(1, super().samples // 5)
 
     @property
@@ -69,7 +71,7 @@ class EllipticGears(Scene):
 
     @validated
     def second_rate(self, first: ArrayLike) -> tuple[Array, Array]:
-        """theta_2' and theta_2'' (...) [rad/s, rad/s^2]: minus the ratio of the contact's distances, and its rate."""
+        """theta_2' and theta_2'' (...) [rad/s, rad/s^2] from the distances of the contact to the pins."""
         first = np.asarray(first, dtype=float)
         e, semi_latus_rectum = self.eccentricity, self.major * (1 - self.eccentricity**2)
         near = semi_latus_rectum / (1 - e * np.cos(first))
@@ -98,7 +100,7 @@ class EllipticGears(Scene):
         pose, twist, _ = self.kinematics(np.zeros(1))
         inertia = self.mass * (self.major**2 + self._minor**2) / 4
         bodies = bodies_of(("first", "second"), (self.mass,) * 2, (inertia,) * 2, pose[0], twist[0])
-        # At theta_1 = theta_2 = 0 the far end of the first touches the near end of the second.
+        # At theta_1 = theta_2 = 0 the far end of the first ellipse touches the near end of the second ellipse.
         rolling = Rolling(shape, shape, 0.0, 0.0, shape.length / 2)
         return Mechanism(
             bodies,

@@ -29,18 +29,17 @@ from reference.validators import Rule
 
 @dataclass(frozen=True)
 class RollingScene(Scene):
-    """A body on fixed ground; subclasses define the curves. The body's curve has the centre of mass as its origin."""
+    """Base of scenes of a body on fixed ground. The body's curve has the centre of mass as its origin."""
 
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
-    # Maximum number of durations: the contact is searched at every step, and bodies on an incline roll faster and
-    # faster.
+    # This limits the cost, since every step searches the contact and bodies on an incline accelerate.
     max_durations: ClassVar[float] = 2.0
 
     mass: Positive = 1.0  # kg.
     start_angle: float = 0.0  # rad.
     start_rate: float = 4.0  # rad/s.
-    ground_arc: float = 0.0  # m, of the contact at the start.
+    ground_arc: float = 0.0  # m, at the start.
     gravity: Vector = (0.0, -GRAVITY)  # m/s^2.
     duration: Positive = 2.0  # s.
     friction: Positive = 1.0  # Friction coefficient of a real contact.
@@ -60,7 +59,7 @@ class RollingScene(Scene):
 
     @property
     def motion_law(self) -> RollingBody:
-        """The body in its one coordinate: forces, friction, hop, slip, small oscillations."""
+        """The rolling body with its forces, friction, hop, slip and small oscillations."""
         return shared(RollingScene._motion_law, self)
 
     def _motion_law(self) -> RollingBody:
@@ -69,12 +68,12 @@ class RollingScene(Scene):
 
     @cached_property
     def hop(self) -> float | None:
-        """The time [s] after which the contact would have to pull; None if it is after the duration."""
+        """The time [s] after which the contact would have to pull, or None if it is after the duration."""
         return self.motion_law.hop(self.duration)
 
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
-        """The time [s] of the first slip or hop of a contact with this friction; later an engine may differ."""
+        """The time [s] of the first slip or hop of a contact with this friction, after which engines may differ."""
         return shared(RollingScene._until_slip, self)
 
     def _until_slip(self) -> float:
@@ -129,7 +128,7 @@ class RollingDisc(RollingScene):
     name: ClassVar[str] = "rolling_disc"
 
     radius: Positive = 0.4  # m.
-    eccentricity: float = 0.15  # m, from the centre of mass to the disc's centre.
+    eccentricity: float = 0.15  # m, between centre of mass and disc's centre.
 
     def body_curve(self) -> Curve:
         return Circle(self.radius, (self.eccentricity, 0.0))
@@ -160,7 +159,7 @@ class RollingCam(RollingScene):
 
 @dataclass(frozen=True)
 class RollingDownhill(RollingEllipse):
-    """The ellipse on an incline that falls to -x, so that it goes faster and faster."""
+    """The ellipse on an incline that falls to -x, on which the ellipse accelerates."""
 
     name: ClassVar[str] = "rolling_incline"
 
@@ -174,7 +173,7 @@ class RollingDownhill(RollingEllipse):
 
 @dataclass(frozen=True)
 class RollingInRing(RollingEllipse):
-    """The ellipse inside a round hole, rolling to and fro about the bottom."""
+    """The ellipse rolls to and fro about the bottom of a round hole."""
 
     name: ClassVar[str] = "rolling_in_ring"
 
@@ -183,7 +182,8 @@ class RollingInRing(RollingEllipse):
 
     @property
     def samples(self) -> int:
-        """Half of the usual number, since a contact of two curved boundaries costs several times as much."""
+        """Half of the usual number, since a contact of two curved boundaries costs several times as much as on flat
+        ground."""
         return max(1, super().samples // 2)
 
     def ground_curve(self) -> Curve:
@@ -192,7 +192,7 @@ class RollingInRing(RollingEllipse):
 
 @dataclass(frozen=True)
 class RollingOnCircle(RollingDisc):
-    """The eccentric disc on top of a fixed round hill: it rolls down, and hops when N falls to zero."""
+    """The eccentric disc rolls down a fixed round hill, and hops when N falls to zero."""
 
     name: ClassVar[str] = "rolling_on_circle"
 
@@ -211,10 +211,10 @@ Clearance = Annotated[float, Rule(lambda value: 0 < value < 1, "between 0 and 1"
 
 @dataclass(frozen=True)
 class DiscInHole(RollingScene):
-    """A round disc that rolls in a hole larger by the fraction `clearance`, without gravity.
+    """A round disc that rolls without gravity in a hole, whose radius is larger by the fraction `clearance` of itself.
 
-    It rotates at a constant rate w, but the contact and the disc's centre go round at the much higher rate
-    w / clearance.
+    The disc rotates at a constant rate w; the contact and the disc's centre go round at the much higher rate of about w
+    / clearance.
     """
 
     name: ClassVar[str] = "disc_in_hole"
@@ -227,7 +227,7 @@ class DiscInHole(RollingScene):
 
     @property
     def radius(self) -> float:
-        """m, of the disc."""
+        """Radius of the disc [m]."""
         return self.hole * (1 - self.clearance)
 
     def body_curve(self) -> Curve:
@@ -242,11 +242,11 @@ class DiscInHole(RollingScene):
 
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
-        """Infinite: N = mass clearance hole (w radius / (clearance hole))^2 is positive and T is zero."""
+        """Infinite, since N = mass clearance hole (w radius / (clearance hole))^2 is positive and T is zero."""
         return math.inf
 
     def _motion(self, times: Array) -> Trajectory:
-        """In closed form, since an integrator would amplify rounding."""
+        """The motion is in closed form, since an integrator would amplify rounding."""
         rolling = self.motion_law.rolling
         theta = rolling.theta + self.start_rate * times
         contact = rolling.contact(theta)
@@ -265,7 +265,7 @@ class DiscInHole(RollingScene):
 
 @dataclass(frozen=True)
 class SquareOnCatenaries(RollingScene):
-    """A square on the arch of a catenary that fits its side: its centre moves on a level line until the corner.
+    """A square on the arch of a catenary; the square's centre moves on a level line until the corner.
 
     At the corner the curvature is infinite, so the motion ends there with an error.
     """
@@ -289,13 +289,13 @@ class SquareOnCatenaries(RollingScene):
 
     @cached_property
     def motion_law(self) -> RollingBody:  # type: ignore[override]
-        """With the start contact at the middle of the side and the top of the arch, given as arcs."""
+        """The contact at the start is the middle of the side and the top of the arch."""
         rolling = Rolling.at_arcs(self.body_curve(), self.ground_curve())
         return RollingBody(rolling, self.mass, self.inertia, self.start_rate, self.gravity)
 
     @cached_property
     def comparable_until(self) -> float:  # type: ignore[override]
-        """Infinite: until the corner, a friction of 1 is enough."""
+        """Infinite, since a friction of 1 suffices until the corner."""
         return math.inf
 
     @property
