@@ -1,4 +1,4 @@
-"""A motion at sampled times, and quantities that need no reference motion: energy, gap, slip, joint points."""
+"""A motion at sampled times, with functions for energy, gaps, slips and joint points."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ ADAPTER_PREFIX = "ours:"
 WarningKind = Literal[
     "contact",  # A contact is lost, or rotates too far in a step.
     "gap",  # A joint is open.
-    "known fault",  # This release or this engine is known to compute wrong motions.
-    "lost",  # The motion ends: numbers are not finite, a joint cannot be satisfied, or a solver fails.
-    "rank",  # Rows of joints are nearly dependent, so that rounding moves them.
+    "known fault",  # This engine or release computes wrong motions in known cases.
+    "lost",  # The motion ends by numbers that are not finite, an unsatisfied joint, or a failed solver.
+    "rank",  # Rows of joints are nearly dependent, so that rounding is amplified.
     "rate limit",  # A velocity was limited.
     "reactions",  # Reactions are unknown or have a large error.
     "residual",  # A solver left a residual.
     "start reactions",  # Only the reactions at the start have an error.
     "stiff",  # Stability, not accuracy, determines the steps.
-    "unconverged",  # Solver iterations leave a part of the slowest mode at every step.
+    "unconverged",  # The solver's slowest mode does not converge within a step.
     "unresolved",  # The error may exceed the method's claim.
     "other",
 ]
@@ -40,11 +40,11 @@ class RunWarning(str):
     """A warning of a run: a text with fields for its kind, origin and time.
 
     kind: one of WarningKind. origin: "engine" for a message of the engine, "upstream" for a fault of the engine that
-    this suite reports, "adapter" for a finding about this suite's adapter or method. time [s]: from this time the
-    warning holds; None if unknown.
+    this suite reports, "adapter" for a finding about this suite's adapter or method. time [s]: the time from which the
+    warning holds, or None if unknown.
 
-    A warning is a string, and two warnings with the same text are equal. A plain string that begins with "ours:" has
-    the origin "adapter"; any other plain string has the origin "engine".
+    A warning is a string, and two warnings with the same text are equal. Plain strings have the origin "adapter" if
+    they begin with "ours:", else "engine".
     """
 
     kind: WarningKind
@@ -67,7 +67,7 @@ class RunWarning(str):
 
     @classmethod
     def of(cls, warning: str) -> RunWarning:
-        """A warning as it is; a plain string as a warning of the kind "other"."""
+        """Convert a plain string to a warning of the kind "other"; return a `RunWarning` unchanged."""
         if isinstance(warning, RunWarning):
             return warning
         return cls(warning, origin="adapter" if warning.startswith(ADAPTER_PREFIX) else "engine")
@@ -77,20 +77,20 @@ class RunWarning(str):
 class Trajectory(Valid):
     """Poses, twists and reactions at times t, in the order of the mechanism's bodies and rows.
 
-    The first sample is at t = 0. The last five fields are those of an engine's run:
+    The first sample is at t = 0. Only engines' runs have the last five fields.
 
-    t (times,) [s]
-    pose (times, bodies, 3) [m, m, rad]; angles are not wrapped
-    twist (times, bodies, 3) [m/s, m/s, rad/s], at the same instants as the poses
-    reaction (times, rows) [N or N m], M a = f + J^T reaction; NaN where unknown
-    stepping [s]: CPU time of the stepping loop, recording included; NaN for a reference motion
-    warnings: those of the engine and of our adapter; `RunWarning`, or plain strings
-    reset_at [s]: the time at which the engine reset its state; later samples are NaN
-    estimate (times, bodies, 3): the method's own estimate of its error in the poses
-    unresolved_at [s]: the time from which that estimate exceeds the method's claim
+    t (times,) [s].
+    pose (times, bodies, 3) [m, m, rad]. Angles are not wrapped.
+    twist (times, bodies, 3) [m/s, m/s, rad/s], at the times of the poses.
+    reaction (times, rows) [N or N m] by M a = f + J^T reaction; NaN if unknown.
+    stepping [s] is the CPU time of the stepping loop, recording included.
+    warnings of the engine and of our adapter are a `RunWarning` or plain strings.
+    reset_at [s] is the time at which the engine reset its state; later samples are NaN.
+    estimate (times, bodies, 3) is the method's estimate of its error in the poses.
+    unresolved_at [s] is the time after which the estimate exceeds the method's claim.
     """
 
-    _copies: ClassVar[bool] = False  # the arrays may be large, and no result computed from them is cached
+    _copies: ClassVar[bool] = False  # arrays may be large, and no cached result depends on them
 
     t: Annotated[Array, of_shape("times")]
     pose: Annotated[Numbers, of_shape("times", "bodies", 3)]
@@ -108,11 +108,11 @@ class Trajectory(Valid):
 
     @property
     def has_engine_warning(self) -> bool:
-        """Whether some warning is no finding about our adapter."""
+        """Whether a warning has the origin "engine" or "upstream"."""
         return any(RunWarning.of(warning).origin != "adapter" for warning in self.warnings)
 
     def table(self) -> dict[str, Array]:
-        """Times and every coordinate (times,) by a name, "t" [s], "x 0", "y 0" [m], "angle 0" [rad] and so on.
+        """Columns (times,) by name: "t" [s], and "x 0", "y 0" [m], "angle 0" [rad] for each body's number.
 
         For pandas: `pandas.DataFrame(trajectory.table())`.
         """
@@ -131,7 +131,7 @@ class Trajectory(Valid):
 
 @validated
 def energy(mechanism: Mechanism, trajectory: Trajectory) -> Array:
-    """Kinetic energy plus the potential (`Mechanism.potential`) of gravity and forces (times,) [J].
+    """Kinetic energy plus `Mechanism.potential` (times,) [J].
 
     It is constant if there is no drive and no damper.
     """
@@ -141,7 +141,7 @@ def energy(mechanism: Mechanism, trajectory: Trajectory) -> Array:
 
 @validated
 def joint_gap(mechanism: Mechanism, trajectory: Trajectory) -> Array:
-    """The position violation of every row (times, rows) [m or rad]; NaN in rows that constrain velocity only."""
+    """The position violation of every row (times, rows) [m or rad], or NaN if the row constrains velocity only."""
     return mechanism.gap(trajectory.pose, trajectory.t)
 
 

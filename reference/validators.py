@@ -1,8 +1,8 @@
-"""Validators of annotations: whether a value is valid, and the words that describe valid values.
+"""Validators check values by annotations and have words that describe valid values.
 
-`float` is a finite number, `int` an integer (a bool is neither). `ArrayLike` is numbers in any shape, `NDArray` is
-converted to an array of floats. Literal, tuple, unions and classes have their usual meaning. `Annotated` adds a Rule,
-or allows NOT_FINITE or COMPLEX numbers. `Any` is not checked. `reference.checks` applies validators to fields and
+`float` is a finite number and `int` an integer; a bool is neither. `ArrayLike` has numbers in any shape, and `NDArray`
+is converted to an array of floats. Literal, tuple, unions and classes have their usual meaning. `Annotated` adds a
+Rule, or allows NOT_FINITE or COMPLEX numbers. `Any` is not checked. `reference.checks` applies validators to fields and
 arguments.
 """
 
@@ -21,23 +21,24 @@ from numpy.typing import ArrayLike, NDArray
 
 # The result of a validator for a value that is not valid.
 INVALID: Any = object()
-# In Annotated: infinite numbers and NaN are valid, unless a rule refuses them.
+# With this mark in Annotated, infinite numbers and NaN are valid unless a rule refuses them.
 NOT_FINITE: Any = object()
-# In Annotated: numbers may be complex.
+# With this mark in Annotated, numbers may be complex.
 COMPLEX: Any = object()
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Rule:
-    """A further condition on a value, and the words that follow those of the value's type in a message."""
+    """A further condition on a value, with words for messages that follow the words of the value's type."""
 
     predicate: Callable[[Any], Any]
     words: str
 
 
 def of_shape(*shape: int | str) -> Rule:
-    """Arrays with these sizes of the last axes. A name is any size; '...' first allows any axes before the others."""
+    """Arrays with these sizes of the last axes. A name stands for any size, and a first '...' for any number of
+    axes."""
     sizes = shape[1:] if shape[:1] == ("...",) else shape
 
     def predicate(value: Any) -> bool:
@@ -50,13 +51,13 @@ def of_shape(*shape: int | str) -> Rule:
 
 
 def from_to(low: float, high: float) -> Rule:
-    """Numbers between these, both included."""
+    """Numbers between `low` and `high`, both included."""
     return Rule(lambda value: low <= value <= high, f"from {low:.12g} to {high:.12g}")
 
 
 @dataclass(frozen=True)
 class Validator:
-    """`validate` returns the value as a plain one, or INVALID; `words` describe valid values."""
+    """The function `validate` returns the plain value or INVALID, and `words` describe valid values."""
 
     words: str
     validate: Callable[[Any], Any]
@@ -100,7 +101,7 @@ def _text(value: Any) -> Any:
 def _array(value: Any) -> Any:
     try:
         array = np.asarray(value)
-    except (TypeError, ValueError):  # ragged, or an object that numpy can't convert
+    except (TypeError, ValueError):  # a ragged sequence, or an object that numpy can't convert
         return INVALID
     return array.astype(float, copy=False) if array.dtype.kind in "iuf" else INVALID
 
@@ -111,7 +112,7 @@ def _finite_array(value: Any) -> Any:
 
 
 def _numbers(value: Any) -> Any:
-    """The value with its type, since functions of numbers return numbers and functions of arrays return arrays."""
+    """The value keeps its type, since functions of numbers return numbers and functions of arrays return arrays."""
     return value if _finite_array(value) is not INVALID else INVALID
 
 
@@ -145,7 +146,7 @@ _UNBOUNDED = {
 
 @lru_cache(maxsize=1024)
 def validator_of(annotation: Any) -> Validator:
-    """The validator of an annotation; raises TypeError where none is known."""
+    """The validator of an annotation. Raises TypeError for an unknown annotation."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if annotation == ArrayLike:
         return Validator("finite numbers", _numbers)
@@ -211,7 +212,7 @@ def _either(validators: Sequence[Validator]) -> Validator:
 
 
 def _instance(annotation: type) -> Validator:
-    # All objects of a dataclass fit if one does. The check of a protocol with twenty members takes 50 us.
+    # All objects of a dataclass satisfy a protocol if one object does. A check with twenty members takes 50 us.
     fitting: set[type] = set()
 
     def validate(value: Any) -> Any:

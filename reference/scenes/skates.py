@@ -141,10 +141,10 @@ class ChaplyginSleigh(Scene):
         return math.asinh(self.speed / (self._arm * abs(self.turning_rate)))
 
     def growth_rate(self) -> float:
-        """The rate [1/s] of the exponential growth of a small turning rate in straight motion at this speed.
+        """The rate [1/s] at which a small turning rate grows exponentially in straight motion at this speed.
 
-        w' = -(m a u / (I + m a^2)) w: it grows if the centre of mass is behind the skate in the direction of travel,
-        and the sleigh turns round.
+        By w' = -(m a u / (I + m a^2)) w, it is positive if the centre of mass is behind the skate in the direction of
+        travel.
         """
         return -self.offset * self.speed / self._arm**2
 

@@ -121,7 +121,7 @@ class DrivenSliderCrank(EmbeddedScene):
     angle: float = 0.5
     rate: float = 10.0
     duration: Positive = 2 * math.pi / 10
-    horizon: Positive = 2 * math.pi / 10  # nothing is unstable: the crank is prescribed
+    horizon: Positive = 2 * math.pi / 10  # stable, since the crank is prescribed
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -198,9 +198,9 @@ class FreeSliderCrank(DrivenSliderCrank):
 
 @dataclass(frozen=True)
 class RodEndInSlot(DrivenSliderCrank):
-    """The driven slider-crank without a sliding block: the rod's end slides in the slot.
+    """The driven slider-crank with the rod's end in the slot and without a sliding block.
 
-    The motion of crank and rod is that of the driven slider-crank; `slider_mass` has no effect.
+    Crank and rod move as with a block, and `slider_mass` has no effect.
     """
 
     name: ClassVar[str] = "rod_end_in_slot"
@@ -266,7 +266,7 @@ class SlottedLever(PlacedScene):
     angle: float = 0.5
     rate: float = 10.0
     duration: Positive = 2 * math.pi / 10
-    horizon: Positive = 2 * math.pi / 10  # nothing is unstable: the crank is prescribed
+    horizon: Positive = 2 * math.pi / 10  # stable, since the crank is prescribed
 
     def __post_init__(self) -> None:
         super().__post_init__()

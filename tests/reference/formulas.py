@@ -20,7 +20,7 @@ from tests.reference.law import Law, Outside, angle, decades
 
 
 def root(square: Any) -> Any:
-    """The square root of a number; raises Outside if the number is negative."""
+    """The square root of a number. Raises Outside if the number is negative."""
     if square < 0:
         raise Outside
     return mp.sqrt(square)
@@ -55,14 +55,14 @@ def four_bar(branch: int) -> Law:
 
 
 def drawn_four_bar(rng: np.random.Generator) -> tuple[float, ...]:
-    """Random lengths and a crank angle at which the loop closes; half of them are near a crank limit."""
+    """Random lengths and a crank angle at which the loop closes; half of the angles are near a crank limit."""
     scale, theta = decades(rng), angle(rng)
     crank, ground, heading = decades(rng, -2, 2), decades(rng, -2, 2), rng.uniform(-math.pi, math.pi)
     if rng.random() < 0.3:
         heading = 0.0
     x, y = ground * math.cos(heading), ground * math.sin(heading)
     span = abs(complex(x, y) - crank * complex(math.cos(theta), math.sin(theta)))
-    if rng.random() < 0.5:  # coupler + rocker exceeds the span by a random amount
+    if rng.random() < 0.5:  # coupler + rocker exceeds the distance B to D
         whole, part = span * (1 + decades(rng, -14, 1)), rng.random()
         coupler, rocker = whole * part, whole * (1 - part)
         if abs(coupler - rocker) > span:
@@ -77,7 +77,7 @@ def drawn_four_bar(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def limits(crank, coupler, rocker, x, y):
-    """The crank angle at which coupler and rocker are in line, from the direction of the ground, by the cosine rule."""
+    """The crank angle from the ground's direction at which coupler and rocker are in line, by the cosine rule."""
     ground = mp.hypot(x, y)
     cosine = (crank**2 + ground**2 - (coupler + rocker) ** 2) / (2 * crank * ground)
     if abs(cosine) >= 1:
@@ -96,8 +96,7 @@ def our_limits(crank, coupler, rocker, x, y):
 def drawn_limits(rng: np.random.Generator) -> tuple[float, ...]:
     scale = decades(rng)
     crank, ground = decades(rng, -2, 2), decades(rng, -2, 2)
-    # coupler + rocker is between |crank - ground|, where the reachable range is a point, and crank + ground, where
-    # it is a full turn.
+    # The reachable range is a point if coupler + rocker is |crank - ground|, and a full turn if it is crank + ground.
     low, high = abs(crank - ground), crank + ground
     part = decades(rng, -14, -0.3)
     reach, share = low + (high - low) * (part if rng.random() < 0.5 else 1 - part), rng.uniform(0.3, 0.7)
@@ -133,7 +132,7 @@ def slider_crank(branch: int) -> Law:
 
 
 def drawn_slider_crank(rng: np.random.Generator) -> tuple[float, ...]:
-    """Random crank and rod lengths; the rod is often only slightly longer than the crank."""
+    """Random crank and rod lengths, with a rod that is often only slightly longer than the crank."""
     scale, clock = decades(rng), decades(rng)
     crank = decades(rng, -2, 2)
     rod = crank * (1 + decades(rng, -12, 2))
@@ -153,7 +152,7 @@ def swung(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
     modulus, back = mp.sqrt(square), mp.sign(rate) or 1
     if square < 1:
         begin = mp.ellipf(mp.asin(sine / modulus), square)
-        if half_rate < 0:  # the pendulum swings back; starts are within half a turn of the bottom
+        if half_rate < 0:  # the swinging pendulum is within half a turn of the bottom
             begin = 2 * mp.ellipk(square) - begin
         u = frequency * t + begin
         sn, cn = mp.ellipfun("sn", u, m=square), mp.ellipfun("cn", u, m=square)
@@ -205,7 +204,7 @@ def drawn_chain(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def tow(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
-    """The drawbar's angle and the wheel's position, by the matrix exponential of the 2 by 2 system."""
+    """The drawbar's angle and the wheel's position, by the exponential of a 2 by 2 matrix."""
     curvature = 1 / radius
     root = mp.sqrt(mp.mpc(1 - (length * curvature) ** 2))
     if root == 0:
@@ -227,21 +226,19 @@ def our_tow(length: float, start: float, radius: float, way: float) -> list[Any]
 
 
 def tow_sizes(length: Any, start: Any, radius: Any, way: Any) -> list[Any]:
-    """Magnitudes for the rounding errors: the start angle for psi, and the drawbar's length for the wheel's
-    position.
-    """
+    """Magnitudes whose rounding is allowed: the start angle for psi, the drawbar's length for the position."""
     turned, x, y = tow(length, start, radius, way)
     place = max(abs(mp.mpc(x, y)), length)
     return [max(abs(turned), abs(start)), place, place]
 
 
 def drawn_tow(rng: np.random.Generator) -> tuple[float, ...]:
-    """Random radii, near the length and far from it; start angles near both equilibria."""
+    """Random radii near the length and far from it, with start angles near both equilibria."""
     length = decades(rng)
     share = 1 + float(rng.choice([-1, 1])) * decades(rng, -12, -0.1) if rng.random() < 0.5 else decades(rng, -2, 4)
     radius = length * share * float(rng.choice([-1, 1]))
     start = math.remainder(angle(rng, (0.0, math.pi)), 2 * math.pi)
-    if abs(share) > 1 and rng.random() < 0.3:  # near the stable or the unstable equilibrium
+    if abs(share) > 1 and rng.random() < 0.3:  # near one of the two equilibria
         settled = -math.asin(length / radius)
         start = (settled if rng.random() < 0.5 else math.pi - settled) + float(rng.normal()) * decades(rng, -9, 0)
         start = math.remainder(start, 2 * math.pi)
@@ -276,19 +273,17 @@ def drawn_sleigh(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def ellipse(a: Any, b: Any, u: Any) -> list[Any]:
-    """Arc, tangent angle, point and curvature, in the convention of `reference.rolling.closed_curves`, by Legendre's
-    integral.
-    """
+    """Arc, tangent angle, point and curvature of an ellipse, by Legendre's integral."""
     if max(a / b, b / a) > 999:
         raise Outside
     sine, cosine = mp.sin(u), mp.cos(u)
-    excess = mp.atan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)  # difference to a circle
+    excess = mp.atan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)  # tangent angle minus a circle's
     curvature = a * b / mp.hypot(a * sine, b * cosine) ** 3
     return [b * mp.ellipe(u, 1 - (a / b) ** 2), u + mp.pi / 2 + excess, a * cosine, b * sine, curvature]
 
 
 def cam(radius: Any, *numbers: Any) -> list[Any]:
-    """Arc, tangent angle, point and curvature of a cam; `numbers`: three pairs of cosine and sine coefficients, and
+    """Arc, tangent angle, point and curvature of a cam; `numbers` are three pairs of cosine and sine coefficients, and
     the normal's angle.
     """
     *harmonics, nu = numbers
@@ -324,7 +319,7 @@ def turned(rng: np.random.Generator) -> float:
 
 
 def drawn_cam(rng: np.random.Generator) -> tuple[float, ...]:
-    """A random convex cam, whose radius exceeds the sum of (k^2 - 1) c_k; some cams are nearly not convex."""
+    """A random convex cam, whose radius exceeds the sum of (k^2 - 1) c_k, often by little."""
     radius, spread = decades(rng), (0.1 if rng.random() < 0.7 else 0.35)
     c = [radius * float(rng.uniform(-1, 1)) for _ in range(2)]
     return radius, *c, *(radius * spread * float(rng.uniform(-1, 1)) / share for share in (3, 3, 8, 8))

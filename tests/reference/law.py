@@ -1,9 +1,8 @@
-"""Comparison of a formula of the reference, in double precision, with the same formula in fifty digits.
+"""Comparison of a formula of the reference in double precision with the same formula in fifty digits.
 
-Every argument is rounded to double precision. So the allowed error of a value is the sum over the arguments of |f(...,
-a (1 + eps), ...) - f(a)|, computed in fifty digits, plus one rounding of the value. This sum replaces the condition
-number, and it is finite also at a singular position. For the components of a vector, the rounding is that of the
-vector.
+Since every argument is rounded to double precision, the allowed error of a value is the sum over the arguments of
+|f(..., a (1 + eps), ...) - f(a)|, in fifty digits, plus one rounding of the value. The sum replaces the condition
+number and is finite also at a singular position. Components of a vector may have the rounding of the vector.
 """
 
 from __future__ import annotations
@@ -23,16 +22,15 @@ Draw = Callable[[np.random.Generator], tuple[float, ...]]
 
 
 class Outside(ValueError):
-    """The formula in fifty digits has no value for these arguments."""
+    """Arguments for which the formula in fifty digits has no value."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """`ours` in double precision and `exact` in fifty digits have the same arguments and return the same values in
-    order.
+    """A formula in double precision (`ours`) and in fifty digits (`exact`), with equal arguments and results.
 
     vectors: slices of values that are the components of one vector. angles: indices of values that are compared up to
-    whole turns. size: returns the magnitude whose rounding is allowed for each value; by default the value itself.
+    whole turns. size: a function that returns the magnitudes whose rounding is allowed, by default the values.
     """
 
     name: str
@@ -64,7 +62,7 @@ class Miss:
 
 
 def differences(law: Law, values: Sequence[Any], others: Sequence[Any]) -> list[float]:
-    """Absolute differences of two lists of values; those of angles are computed up to whole turns."""
+    """Absolute differences of two lists of values, for angles up to whole turns."""
     gaps = [one - other for one, other in zip(values, others, strict=True)]
     for k in law.angles:
         gaps[k] -= 2 * mp.pi * mp.nint(gaps[k] / (2 * mp.pi))
@@ -72,9 +70,7 @@ def differences(law: Law, values: Sequence[Any], others: Sequence[Any]) -> list[
 
 
 def moved_by_roundings(law: Law, numbers: list[Any], exact: list[Any]) -> list[float] | None:
-    """For each value, the sum of its changes if each argument changes by a rounding; None if the formula has no
-    value nearby.
-    """
+    """The change of each value if arguments change by a rounding, or None if the formula has no value nearby."""
     out = [0.0] * len(exact)
     for index, number in enumerate(numbers):
         moves = []
@@ -91,9 +87,7 @@ def moved_by_roundings(law: Law, numbers: list[Any], exact: list[Any]) -> list[f
 
 
 def misses(law: Law, arguments: tuple[float, ...]) -> list[Miss] | None:
-    """One Miss for each value; None if the formula in double precision or in fifty digits has no value at these
-    arguments.
-    """
+    """The errors of all values, or None if one of the two formulas has no value at these arguments."""
     with mp.workdps(DIGITS):
         numbers = [mp.mpf(argument) for argument in arguments]
         try:
@@ -119,9 +113,7 @@ def misses(law: Law, arguments: tuple[float, ...]) -> list[Miss] | None:
 
 
 def searched(law: Law, cases: int, seed: int) -> Iterator[Miss]:
-    """For each of `cases` random arguments, the value with the largest ratio; arguments without a value are drawn
-    again.
-    """
+    """The largest error for each of `cases` random arguments; arguments without a value are drawn again."""
     rng, left, tried = np.random.default_rng(seed), cases, 0
     while left:
         tried += 1
@@ -139,7 +131,7 @@ def decades(rng: np.random.Generator, low: float = -9, high: float = 9) -> float
 
 
 def near(rng: np.random.Generator, place: float, width: float = 1.0) -> float:
-    """A random number at a distance of 1e-15 to 1 widths from `place`, on either side."""
+    """A random number at a distance of 1e-15 to 1 widths from `place` on either side."""
     return place + width * float(rng.choice([-1, 1])) * decades(rng, -15, 0)
 
 

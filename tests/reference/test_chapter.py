@@ -29,12 +29,14 @@ from reference.trajectory import Trajectory
 from tests.present import present
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
-# The coupler's rotation rate vanishes at theta = 2.8006 and 5.9406 rad. These intervals do not contain these angles.
+# The coupler's rotation rate vanishes at theta = 2.8006 and 5.9406 rad. The intervals of the test do not contain these
+# angles.
 ARCS = {"coupler backward": (0.6, 2.4), "coupler forward": (3.5, 5.5)}
 
 
 def coupler(low, high, count, rate=10.0):
-    """Times, poses and twists of the coupler at a constant crank rate [rad/s]; the origin of its frame is B."""
+    """Times, poses and twists of the coupler at a constant crank rate [rad/s]; B is the origin of the coupler's
+    frame."""
     theta = np.linspace(low, high, count)
     beta, _ = LINKAGE.angles(theta)
     beta_rate, _ = LINKAGE.rates(theta, rate)
@@ -71,7 +73,7 @@ def test_the_centrodes_of_a_sliding_ladder_are_cardans_circles():
     motion = from_poses(*cardan())
     np.testing.assert_allclose(np.linalg.norm(motion.space, axis=-1), 1.0, atol=1e-11)
     np.testing.assert_allclose(np.linalg.norm(motion.body, axis=-1), 0.5, atol=1e-11)
-    inner = slice(5, -5)  # The end derivatives of a spline are extrapolated.
+    inner = slice(5, -5)  # A spline's derivatives at the ends are extrapolated.
     # The curvature needs three derivatives of the poses, so its rounding error is eps / (0.0055 rad)^3.
     np.testing.assert_allclose(motion.space_curvature[inner], -1.0, atol=1e-7)
     np.testing.assert_allclose(motion.body_curvature[inner], 2.0, atol=1e-7)
@@ -83,8 +85,8 @@ def test_rolling_the_centrodes_of_a_coupler_reproduces_its_motion(arc):
     between = coupler(ARCS[arc][0] + 1e-3, ARCS[arc][1] - 1e-3, 777)[1]
     for motion in (centrodes(t, pose, twist), from_poses(t, pose)):
         found = motion.rolling().pose(between[:, 2])
-        # A spline of degree 7 through 400 points over 2 rad has an error of 1e-10 in the curves. The errors of
-        # the two curves nearly cancel in the pose.
+        # A spline of degree 7 through 400 points over 2 rad has an error of 1e-10 in the curves. The errors of both
+        # curves nearly cancel in the pose.
         np.testing.assert_allclose(found, between, rtol=0, atol=1e-11)
         assert 0 < motion.error < 1e-8
 
@@ -95,7 +97,7 @@ def test_the_centrode_error_is_the_velocity_error_over_the_rotation_rate():
     for every in (1, 2, 4):
         run = Lagrange("rk4", "none").build(scene.mechanism(), 0.02 / every)(50, every)
         errors.append(centrode_error(scene.motion(run.t), run).max())
-    # The errors of the velocities have the order 4 of the Runge-Kutta method.
+    # Velocities by the Runge-Kutta method have errors of order 4.
     np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 4, atol=0.5)
     truth = scene.motion([0.0, 0.1])
     shifted = Trajectory(truth.t, truth.pose, truth.twist + np.array([1e-3, 0, 0]), truth.reaction)
@@ -107,7 +109,7 @@ def test_the_centrode_error_is_the_velocity_error_over_the_rotation_rate():
 def test_shapes_have_equal_arc_lengths_and_touch_at_equal_indices():
     shapes = shapes_of(from_poses(*coupler(*ARCS["coupler forward"], 401)[:2]), points=300)
     lengths = [np.linalg.norm(np.diff(points, axis=0), axis=-1) for points in (shapes.space, shapes.body)]
-    # A chord of 3 mm is shorter than its arc by about its cube over the squared radius of curvature.
+    # A chord of 3 mm is shorter than its arc by about the cube of its length over the squared radius of curvature.
     np.testing.assert_allclose(lengths[0], lengths[1], atol=1e-6)
     for index in (0, 150, 299):
         np.testing.assert_allclose(placed_body(shapes, index)[index], shapes.space[index], atol=1e-13)
@@ -145,7 +147,7 @@ def test_a_table_of_poses_may_have_its_columns_in_any_order():
 
 def test_the_error_bound_of_centrodes_from_poses_is_above_their_true_error():
     t = np.linspace(0, 1.2, 60)
-    run, pace = t + 0.05 * np.sin(12 * t), 1 + 0.6 * np.cos(12 * t)  # the same curves, traversed at a varying rate
+    run, pace = t + 0.05 * np.sin(12 * t), 1 + 0.6 * np.cos(12 * t)  # same curves, varying rate
     pose = np.column_stack([0.3 * np.cos(2 * run), 0.1 * np.sin(3 * run), 3 * run + 0.02 * np.sin(5 * run)])
     twist = np.column_stack([-0.6 * np.sin(2 * run), 0.3 * np.cos(3 * run), 3 + 0.1 * np.cos(5 * run)]) * pace[:, None]
     found, exact = from_poses(t, pose), centrodes(t, pose, twist)

@@ -12,7 +12,7 @@ from tests.reference.law import Law, misses, searched
 
 NAMED = {law.name: law for law in LAWS}
 # Allowed error in units of the rounding of the arguments. A formula of twenty operations causes up to twenty roundings.
-# A lost decimal digit is a factor of ten, and most of the errors that were found had lost four digits.
+# A lost decimal digit is a factor of ten, and most of the errors found by this test had lost four digits.
 ROUNDINGS = 20
 
 
@@ -23,9 +23,9 @@ def test_formulas_have_errors_of_a_few_roundings_of_their_arguments(law: Law, ca
     assert miss.ratio < ROUNDINGS, str(miss)
 
 
-# Arguments at which an earlier version of a formula lost digits.
+# Arguments at which earlier versions of formulas lost digits.
 FOUND = {
-    # The ground is 1500 times shorter than the crank: a sum with the crank's square lost the ground's digits.
+    # If the ground is 1500 times shorter than the crank, a sum with the crank's square loses the ground's digits.
     "four-bar, branch +1": (
         *(9025.355793020284, 24461.827924377452, 18821.77529205487, -0.9988767354831353, -5.781930411818574),
         *(-1.8032103807498472, -48.80631439014284, 0.2038044762375766),
@@ -37,8 +37,8 @@ FOUND = {
     ),
     # The tangent angle was a sum of a circle's angle and an excess, which cancelled on the flat side.
     "ellipse at a parameter": (0.2970230243104033, 0.0011085289153370565, -1.5707907017221043),
-    # The logarithm of a number near 1 for a short path, and the cancellation of two angles on a circle shorter than
-    # the drawbar.
+    # The logarithm of a number near 1 lost digits for a short path, and the sum of two angles on a circle that is
+    # shorter than the drawbar.
     "towed wheel": (1185375.3119599016, 0.5602953463275804, 1259916407.01395, 4.095497157341971e-05),
     "towed wheel, going round": (
         *(6.205517261697245, -0.15671260809038934, -0.08751075069403959, -12.758961976426988),

@@ -1,4 +1,4 @@
-"""Four-bar, slider-crank and Andrews' mechanism: branches, ranges, dead centres, and the numbers of a test set."""
+"""Tests of the four-bar, the slider-crank and Andrews' mechanism."""
 
 from __future__ import annotations
 
@@ -53,8 +53,7 @@ def random_linkages(count):
 def test_angles_of_random_linkages_are_continuous_at_every_crank_angle():
     for linkage in random_linkages(15):
         for low, high in linkage.crank_limits() or ((-15.0, 15.0),):
-            # Chebyshev spacing resolves the square-root behaviour at the ends. The largest difference must
-            # agree with the rates.
+            # Chebyshev spacing resolves the square-root behaviour at the ends of the interval.
             theta = (low + high) / 2 - (high - low) / 2 * np.cos(np.linspace(2e-3, np.pi - 2e-3, 2000))
             for branch in (1, -1):
                 values = np.array(linkage.angles(theta, branch))
@@ -69,11 +68,11 @@ def test_the_bars_of_a_double_crank_turn_fully_with_the_crank(linkage, branch):
     assert linkage.grashof() == "double-crank"
     theta = np.linspace(-10, 10, 41)
     turned = np.array(linkage.angles(theta + 6 * np.pi, branch)) - linkage.angles(theta, branch)
-    assert np.max(np.abs(turned - 6 * np.pi)) < 1e-13  # three turns, with the rounding error of theta
+    assert np.max(np.abs(turned - 6 * np.pi)) < 1e-13  # after three turns theta has a rounding error
     shuffled = np.random.default_rng(0).permutation(theta.size)
     assert np.array_equal(linkage.angles(theta[shuffled], branch)[0], linkage.angles(theta, branch)[0][shuffled])
     rocking = np.array(CHAPTER.angles(theta + 20 * np.pi)) - CHAPTER.angles(theta)
-    assert np.max(np.abs(rocking)) < 1e-13  # the coupler and rocker of a crank-rocker do not turn fully
+    assert np.max(np.abs(rocking)) < 1e-13  # coupler and rocker of a crank-rocker do not turn fully
 
 
 def test_huge_crank_angles_and_multiples_of_pi_are_accurate_to_rounding():
@@ -133,7 +132,7 @@ def test_coupler_and_rocker_are_in_line_at_crank_limits_and_angles_beyond_are_re
         ((2.0, 2.2, 1.9), (3.0, 0.0), "triple-rocker"),
         ((0.1, 0.3, 0.1), (0.3, 0.0), "change-point"),
         ((0.1, 0.7, 0.2), (0.8, 0.0), "change-point"),  # 0.1 + 0.8 and 0.7 + 0.2 differ by rounding.
-        # A difference of 1e-11 m is no change-point: s + l - p - q for s = 1, l = 3, p = 1.5, q = 2.5 m.
+        # A linkage with s + l - p - q = 1e-11 m is no change-point.
         ((1.0, 1.5, 2.5 - 1e-11), (3.0, 0.0), "triple-rocker"),
         ((1.0, 1.5, 2.5 + 1e-11), (3.0, 0.0), "crank-rocker"),
     ],
@@ -147,10 +146,10 @@ def test_a_parallelogram_is_accurate_next_to_its_change_point():
     parallelogram = FourBar(0.1, 0.3, 0.1, (0.3, 0.0))
     assert parallelogram.crank_limits() is None
     for theta in (1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9, 1e-100, -1e-100):
-        # On one of the two branches the coupler is parallel to the ground.
+        # On one branch the coupler is parallel to the ground.
         pairs = np.array([wrapped(parallelogram.angles(theta, branch)) for branch in (1, -1)])
         beta, phi = pairs[np.argmin(np.abs(pairs[:, 0]))]
-        # A formula with a difference of squared lengths would have an error of eps / theta.
+        # Formulas with a difference of squared lengths would have an error of eps / theta.
         assert abs(beta) < 4e-15
         assert abs(phi - theta) < 4e-15
 
@@ -170,15 +169,15 @@ def test_a_free_triple_rocker_changes_its_branch_at_crank_limits_without_a_jolt(
     assert set(branch) == {1, -1}
     for change in np.flatnonzero(np.diff(branch)):
         near = min(abs(theta[change] - low), abs(theta[change] - high))
-        assert near < 0.05  # Less than the crank's rotation between two samples.
-        # The change of the speed agrees with the mean of the accelerations at both samples.
+        assert near < 0.05
+        # The change of the speed agrees with the mean of the accelerations at two samples.
         pair = slice(change, change + 2)
         told = np.mean(bend[pair], axis=0) * np.diff(motion.t[pair])
         assert np.max(np.abs(np.diff(motion.twist[pair], axis=0)[0] - told)) < 0.1
-    # At all samples the angles agree with the closed form on the branch that `branch_of` returns.
+    # At all samples the angles agree with the closed form for the branch from `branch_of`.
     beta, phi = each.four_bar.angles(np.clip(theta, low, high), branch)
     turns = np.array([beta, phi]) - motion.pose[:, 1:, 2].T
-    assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # square root of rounding at a limit
+    assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # root of rounding at a limit
 
 
 def test_a_parallelogram_has_one_more_freedom_with_its_bars_in_line():
@@ -199,7 +198,7 @@ def test_the_stopping_time_depends_on_the_sense_of_rotation(rate):
     scene.motion([scene.stopping_time * (1 - 1e-9)])
     with pytest.raises(Unreachable, match="can't close; possible is"):
         scene.motion([scene.stopping_time * (1 + 1e-9)])
-    # |B - D| = coupler + rocker: 0.64 + 1.44 - 1.92 cos(theta) = 1
+    # |B - D|^2 = 0.64 + 1.44 - 1.92 cos(theta) is (coupler + rocker)^2 = 1
     assert OverdrivenFourBar().stopping_time == pytest.approx(np.arccos(0.5625) / 4, rel=1e-15)
     free = OverdrivenFourBar(crank=0.4, coupler=0.4 * np.sqrt(2), rocker=0.8 * np.sqrt(2), start=1.0)
     assert free.stopping_time == np.inf
@@ -228,14 +227,13 @@ MULTIPLIERS = (98.5668703962410896057654982170, -6.12268834425566265503114393122
 
 
 def of_the_test_set(angles: np.ndarray) -> np.ndarray:
-    """The test set's seven angles, computed from the bodies' angles (..., 7)."""
+    """The test set's seven angles from the bodies' angles (..., 7)."""
     k1, k2, k3, k4, k5, k6, k7 = np.moveaxis(angles, -1, 0)
     return np.stack([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7], axis=-1)
 
 
 def test_the_final_angles_of_andrews_mechanism_agree_with_the_test_set():
-    # The digits of the test set have an error of about 1.4e-9: two formulations here, which agree to 1e-12, show
-    # this difference.
+    # The test set's numbers have an error of about 1.4e-9. Two formulations of this suite agree to 1e-12.
     ends = SCENE.motion(0.03).pose[0, :, 2]
     by_multipliers = TRUTH.build(SCENE.mechanism(), 0.03)(1, 1).pose[1, :, 2]
     np.testing.assert_allclose(of_the_test_set(ends), END, atol=1e-8)
@@ -255,8 +253,8 @@ def test_the_initial_accelerations_of_andrews_mechanism_agree_with_the_test_set(
 
 @pytest.mark.parametrize("told", ["truth", "lagrange"])
 def test_the_initial_multipliers_of_andrews_mechanism_agree_with_the_test_set(told):
-    # The test set's constraint is the rod's end minus the end of body 3, 4 or 6, with M q'' = f - G^T lambda. Here
-    # the rod K2 is the second body, and M a = f + J^T reaction, so a multiplier is minus the reaction.
+    # The test set has M q'' = f - G^T lambda with the rod's end minus the end of body 3, 4 or 6 as constraint. This
+    # suite has M a = f + J^T reaction with the rod K2 as second body, so a multiplier is minus the reaction.
     mechanism = SCENE.mechanism()
     motion = SCENE.motion(0.0) if told == "truth" else TRUTH.build(mechanism, 1e-4)(1, 1)
     names = [f"{pin} {direction}" for pin in ("P3", "P4", "P6") for direction in "xy"]

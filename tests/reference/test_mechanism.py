@@ -1,4 +1,4 @@
-"""Tests of mechanisms: rows, gaps, biases, reactions, force elements, scales and memory."""
+"""Tests of rows, gaps, biases, reactions, force elements, scales and memory of mechanisms."""
 
 from __future__ import annotations
 
@@ -45,13 +45,13 @@ JOINTED = {
 def test_rows_are_derivatives_of_the_gap_and_the_bias_is_minus_the_rate_of_the_rows(name):
     mechanism, h = JOINTED[name], 1e-5
     poses, twists = RANDOM.normal(size=(2, 20, len(mechanism.bodies), 3))  # Random poses do not satisfy the joints.
-    rows, step = mechanism.rows(poses), 1e-30  # A complex step has no cancellation, so the errors are roundings.
+    rows, step = mechanism.rows(poses), 1e-30  # Errors are roundings, since a complex step has no cancellation.
     for column in range(rows.shape[-1] if name != "skate" else 0):
         moved = poses.astype(complex).reshape(20, -1)
         moved[:, column] += 1j * step
         derivative = np.imag(mechanism.gap(moved.reshape(poses.shape), 0.0)) / step
         np.testing.assert_allclose(rows[..., column], derivative, rtol=1e-12, atol=1e-13)
-    # Central differences of J v along q + t v have an error of about 1e-10 and use no code of the bias.
+    # Central differences of J v along q + t v do not use `bias` and have an error of about 1e-10.
     states = (poses + h * twists, poses - h * twists)
     ahead, behind = (np.einsum("trc,tc->tr", mechanism.rows(at), twists.reshape(20, -1)) for at in states)
     bias = mechanism.bias(poses, twists)
@@ -79,14 +79,14 @@ def test_reactions_computed_from_accelerations_satisfy_newtons_law():
     reaction = RANDOM.normal(size=driven.row_count)
     weight = 1 / driven.inertias.reshape(-1)
     acceleration = (driven.free_fall.reshape(-1) + weight * (rows.T @ reaction)).reshape(-1, 3)
-    # The bound is a rounding (1e-16) times the condition number of the rows (about 1e3).
+    # The condition number of the rows is about 1e3, so rounding causes an error of 1e-13.
     np.testing.assert_allclose(driven.reaction(driven.pose, acceleration), reaction, atol=1e-12)
 
 
 def test_reactions_are_computed_with_the_masses_and_gravity_of_the_engines_model():
     mechanism = pendulum()
     resting = np.zeros((1, 3))
-    held = np.array([[3.0, 3.0, np.nan]])  # NaN: the mechanism's inertia is used
+    held = np.array([[3.0, 3.0, np.nan]])  # NaN is replaced by the mechanism's inertia
     found = mechanism.reaction(mechanism.pose, resting, held, np.array([0.0, -2.0]))
     own = mechanism.reaction(mechanism.pose, resting)
     heavy = replace(mechanism, bodies=(replace(mechanism.bodies[0], mass=3.0),), gravity=(0.0, -2.0))
@@ -97,7 +97,7 @@ def test_reactions_are_computed_with_the_masses_and_gravity_of_the_engines_model
 def test_energy_gap_and_slip_are_computed_without_a_reference_motion():
     mechanism = pendulum(angle=0.0, rate=2.0)
     start = Trajectory(np.zeros(1), mechanism.pose[None], mechanism.twist[None], np.zeros((1, 2)))
-    # Kinetic energy I omega^2 / 2 of a bar of 1 kg and 1 m about its end, with I = 1/3 kg m^2 and omega = 2 rad/s.
+    # The kinetic energy is I omega^2 / 2 with I = 1/3 kg m^2 about the bar's end and omega = 2 rad/s.
     np.testing.assert_allclose(energy(mechanism, start), [2 / 3], rtol=1e-15)
     assert np.max(np.abs(joint_gap(mechanism, start))) == 0
     assert np.max(np.abs(slip(mechanism, start))) < 1e-15
@@ -140,7 +140,7 @@ POSES, TWISTS = RANDOM.normal(size=(2, 20, 4, 3))
 
 
 def slopes(function: Any, at: np.ndarray) -> np.ndarray:
-    """Derivatives (20, 12) of an analytic function by the coordinates (20, 4, 3), computed by complex steps."""
+    """Derivatives (20, 12) of an analytic function by the coordinates (20, 4, 3), by complex steps."""
     steps = 1e-100j * np.eye(12).reshape(12, 4, 3)
     return np.stack([np.imag(function(at + step)) / 1e-100 for step in steps], axis=-1)
 
@@ -209,8 +209,7 @@ def test_reactions_agree_with_fifty_digits_for_large_mass_ratios(ratio):
     excess = (rows.T @ forces) / inertias
     found = reactions(rows, inertias, excess, np.ones(8), 1.0)
     exact = in_fifty_digits(rows, inertias, excess)
-    # Least squares amplify rounding by the square root of the mass ratio. A solution with J M^-1 J^T amplifies it
-    # by the ratio.
+    # Least squares amplify rounding by the square root of the mass ratio, and a solution with J M^-1 J^T by the ratio.
     assert np.abs(found - exact).max() < 1e-13 * max(ratio, 1 / ratio) ** 0.5 * np.abs(exact).max()
 
 
@@ -236,13 +235,13 @@ def test_degrees_of_freedom_do_not_depend_on_the_unit_of_length(scale):
         (2, 2),
         (1, 1),
         (1, 1),
-    ]  # the arm lies along x, so the slot holds it as the motor does
+    ]  # slot and motor are dependent, since the arm lies along x
 
 
 def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth():
     rows = np.zeros((4, 6))
-    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # Independent of the other rows.
-    rows[1, :2] = 1.0, 1e-3  # The first row plus a thousandth of the third.
+    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # The fourth row is independent.
+    rows[1, :2] = 1.0, 1e-3  # The first row plus a thousandth of the third row.
     several = undetermined(np.stack([rows, np.eye(6)[:4]]), 1.0)
     assert several.tolist() == [[True, True, True, False], [False] * 4]
     assert rank(rows, 1.0) == 3
@@ -271,12 +270,12 @@ def test_the_band_solver_recovers_the_reactions_from_the_accelerations(scene: An
     found = banded_reaction(mechanism.joint_rows, pose, excess, mechanism.inertias)
     # The condition number of the system of a hundred links is about 1e4.
     assert np.abs(found - forces).max() < 1e-11
-    # Adding and subtracting the acceleration of free fall causes a rounding error.
+    # The acceleration of free fall is added and subtracted, which causes a rounding error.
     assert np.abs(mechanism.reaction(pose, mechanism.free_fall + excess) - found).max() < 1e-11
 
 
 def with_a_pin_beside_the_last(distance: float) -> Mechanism:
-    """Ten links with a second pin at this distance [m] from the last pin."""
+    """A chain of ten links with a second pin at this distance [m] from the last pin."""
     mechanism = TenLinks().mechanism()
     last = mechanism.joints[-1]
     assert isinstance(last, Pin)
@@ -291,17 +290,17 @@ def test_nearly_coincident_pins_are_solved_by_the_dense_system_and_share_the_for
         pose, forces, excess = pushed(twice)
         assert np.isnan(banded_reaction(twice.joint_rows, pose, excess, twice.inertias)).any(axis=1).all()
         found = twice.reactions_of(pose, excess, twice.inertias)
-        if distance == 1e-6:  # the condition number of the rows is 6e7, so rounding causes an error of about 1e-8
+        if distance == 1e-6:  # the rows' condition number of 6e7 causes an error of about 1e-8
             assert np.abs(found - forces).max() < 1e-6
-        else:  # below the threshold of the rank: the pins count as one, and the minimum-norm forces are returned
+        else:  # below the threshold of the rank both pins count as one pin, and minimum-norm forces are returned
             once = TenLinks().mechanism().reactions_of(pose, excess, twice.inertias)
             assert np.abs(found[:, -4:-2] + found[:, -2:] - once[:, -2:]).max() < 1e-6 * np.abs(once).max()
             assert np.abs(found).max() < 2 * np.abs(once).max()
 
 
 LINKS = 2_000
-# Measured: 1.4 to 1.9 kB per link, in Python objects and arrays. A dense matrix of the rows takes 48 N bytes per link,
-# that is 96 kB for 2000 links.
+# Objects and arrays take 1.4 to 1.9 kB per link (measured). A dense matrix would take 48 N bytes per link, or 96 kB for
+# 2000 links.
 BYTES_A_LINK = 4_000
 
 
@@ -341,7 +340,7 @@ BODY = Body("b", 2.0, 0.5, (0.0, 0.0, 0.0))
 AT = (
     0.3,
     0.4,
-)  # [m]: the inverse of the effective mass is 1/2 + 0.25/0.5 = 1 per kilogram
+)  # m; the inverse effective mass is 1/2 + 0.25/0.5 = 1 per kilogram
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Gauss collocation compared with closed forms, with more stages and with the explicit method of order 8."""
+"""Comparison of Gauss collocation with closed forms, with more stages and with the explicit method of order 8."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ FAST = np.longdouble(700)
 
 
 def oscillations(t: np.ndarray) -> np.ndarray:
-    """Two angles and their rates (times, 4): both angles contain a slow oscillation, the second one also a fast
-    oscillation.
+    """Two angles and their rates (times, 4). The first angle is a slow oscillation, the second the sum of a slow and a
+    fast one.
     """
     t = t.astype(np.longdouble)
     slow, fast = np.cos(t), np.sin(FAST * t) / FAST
@@ -22,7 +22,7 @@ def oscillations(t: np.ndarray) -> np.ndarray:
 
 
 def pull(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Angular accelerations of `oscillations`."""
+    """Angular accelerations in the motion of `oscillations`."""
     slow = angle[..., 0]
     return np.stack([-slow, -slow - FAST**2 * (angle[..., 1] - slow)], axis=-1)
 
@@ -31,10 +31,10 @@ def pull(angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
 def test_collocation_of_a_fast_and_a_slow_oscillation_is_accurate_at_all_times():
     t = np.sort(np.random.default_rng(1).uniform(0, 2, 300))
     found = gauss.integrate(pull, [1.0, 1.0], [0.0, 1.0], 2.0, 1.0)
-    # A rounding of the time (2e-16 s) times the rate of the fast oscillation (1 rad/s).
+    # The error is a rounding of the time (2e-16 s) times the rate of the fast oscillation (1 rad/s).
     assert np.abs(found(t) - oscillations(t))[:, :2].max() < 1e-15
     assert np.abs(found(t) - oscillations(t))[:, 2:].max() < 1e-15 * 700
-    # A window is about a third of a period; the explicit method needs twenty steps for a third of a period.
+    # A window is about a third of a period, for which the explicit method needs twenty steps.
     assert len(found.times) < 2 * 700
 
 
@@ -47,8 +47,7 @@ def test_motions_with_rates_in_doubles_are_accurate_by_collocation_and_by_the_ex
     monkeypatch.setattr(gauss, "FEW_WINDOWS", few)
     t = np.linspace(0, 30, 50)
     found = gauss.motion(circle, [0.0, 1.0], 30.0, np.ones(2))(t)
-    # The explicit method has an error of 3e-14 per step in about fifty steps. Collocation has rounding errors, in
-    # every window if numpy.longdouble is a double.
+    # The explicit method has an error of 3e-14 per step in about fifty steps. Collocation has only rounding errors.
     allowed = 2e-12 if few == 2 else 5e-14
     assert np.abs(found - np.stack([np.sin(t), np.cos(t)], axis=-1)).max() < allowed
 
@@ -63,7 +62,7 @@ def test_the_error_bound_of_a_motion_with_few_windows_is_above_its_true_error():
     )
     stated = gauss.error_of(rates, [3.0, 0.5], t, np.ones(2))
     assert np.all(stated > np.abs(found - exact(t)).max(axis=-1))
-    # The bound is above ten roundings, so the coarser rule has a different error.
+    # If both rules agreed to rounding, the bound would be ten roundings.
     assert stated.max() > 1.5 * gauss.COARSER * np.finfo(float).eps * np.abs(found).max()
     assert stated.max() < 1e-10
 

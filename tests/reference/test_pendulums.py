@@ -1,4 +1,4 @@
-"""Pendulums, chains, N-four-bars and a falling person: closed forms, modes, passages and singular instants."""
+"""Tests of pendulums, chains, N four-bars and a falling person."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_jacobi_functions_are_accurate_up_to_the_separatrix(complement: float) -
             sn, cn, dn, amplitude = (float(value) for value in jacobi(argument, complement))
             exact_sn, exact_cn, exact_dn = (
                 mpmath.ellipfun(f, mpmath.mpf(argument), m=parameter) for f in ("sn", "cn", "dn")
-            )  # The rounding of the argument is at most 230e-16, and the functions have slopes of at most 1.
+            )  # The argument has a rounding of at most 230e-16, and the functions' slopes are at most 1.
             tolerance = 8e-16 * (1 + abs(argument))
             assert abs(sn - exact_sn) < tolerance
             assert abs(cn - exact_cn) < tolerance
@@ -79,7 +79,7 @@ def test_passages_agree_with_sign_changes_of_the_sampled_motion(pendulum):
         seen = t[1:][side[1:] * side[:-1] < 0]
         assert len(seen) > 10
         np.testing.assert_allclose(pendulum.passages(angle, float(t[-1])), seen, atol=2 * t[1])
-        for last in (0, 3, len(seen) - 1):  # `until` shortly after a passage, and shortly before it
+        for last in (0, 3, len(seen) - 1):  # `until` is shortly after and shortly before a passage
             exact = float(pendulum.passages(angle, float(t[-1]))[last])
             assert len(pendulum.passages(angle, exact * (1 + 1e-12))) == last + 1
             assert len(pendulum.passages(angle, exact * (1 - 1e-12))) == last
@@ -103,7 +103,7 @@ def test_accelerations_from_joint_forces_agree_with_lagranges_equations(links: i
 
 
 def lagrangian_accelerations(chain: Chain, angle, rate):
-    """angle'' (links,) [rad/s^2] by Lagrange's equations with a dense matrix, without joint forces."""
+    """angle'' (links,) [rad/s^2] by Lagrange's equations with a dense matrix."""
     difference = angle[:, None] - angle
     right = -(chain.inertia_matrix * np.sin(difference)) @ rate**2 - chain.stiffness * np.sin(angle)
     return np.linalg.solve(chain.inertia_matrix * np.cos(difference), right)
@@ -115,10 +115,9 @@ def test_the_error_bound_of_a_chain_of_one_link_is_above_the_error_against_the_c
     true = np.abs(chain.motion(t).pose - exact.motion(t).pose)[..., 0, 2].max()
     stated = chain.truth_error(t).max()
     assert stated > true > 0
-    # The bound is ten times the difference of two integrations, so it may not exceed the error by much more than
-    # that.
+    # The bound is ten times the difference of two integrations, so it is not much larger than ten times the error.
     assert stated < 1e3 * true
-    # About a dozen windows, each with a rounding error of the accelerations.
+    # There are about a dozen windows, each with a rounding error of the accelerations.
     assert true < 1e-14
 
 
@@ -140,7 +139,7 @@ def test_modes_of_one_two_and_many_links_agree_with_closed_forms() -> None:
     assert np.abs(two / exact - 1).max() < 1e-14
     links = 300
     many, _ = Chain((1 / links,) * links, (1 / links,) * links, gravity).modes()
-    rope = jn_zeros(0, 3) / 2 * math.sqrt(gravity)  # Daniel Bernoulli's hanging chain of unit length
+    rope = jn_zeros(0, 3) / 2 * math.sqrt(gravity)  # a hanging chain of unit length (Daniel Bernoulli)
     assert np.abs(many[:3] / rope - 1).max() < 20 / links**2
 
 
@@ -166,8 +165,8 @@ def test_forces_grow_without_limit_near_a_singular_position_of_several_loops() -
     for loops, grows in ((1, False), (2, True), (10, True)):
         scene = NFourBar(loops=loops)
         largest = np.abs(scene.motion(scene.singular_times(2.0)[0] - before).reaction).max(axis=1)
-        # cos(angle) is proportional to the remaining time, so the force grows tenfold if the time is ten times
-        # shorter.
+        # cos(angle) is proportional to the remaining time, so the force is inversely proportional to the remaining
+        # time.
         ratio = largest[2] / largest[1]
         assert (7 < ratio < 11) if grows else (0.9 < ratio < 1.1)
 
@@ -176,10 +175,9 @@ def test_the_branch_distinguishes_parallelograms_from_folded_loops() -> None:
     scene, mechanism = NFourBar(), NFourBar().mechanism()
     assert np.all(scene.branch_of(scene.motion(np.linspace(0, 10, 501)).pose) == 1)
     assert np.all(scene.branch_of(scene.motion(scene.singular_times(10.0)).pose) == 1)
-    # Crank, pivot position, coupler and angle of a folded loop. First: crank 0 lies along the ground, coupler 0
-    # along crank 1. Second and third: crank 2 lies along the ground to pivot 1, coupler 1 along crank 1. At t =
-    # 1.25 s crank 1 points to the left, where the angles of a parallelogram fit better than those of the first
-    # folded form.
+    # Each case has crank, pivot position, coupler and angle of a folded loop. In the first case crank 0 lies along the
+    # ground and coupler 0 along crank 1. In the second and third case crank 2 lies along the ground and coupler 1 along
+    # crank 1. At t = 1.25 s crank 1 points to the left, so a parallelogram fits better than the first folded form.
     for t, crank, at, coupler, way in ((0.3, 0, 0.5, 3, 0.0), (0.3, 2, 1.5, 4, math.pi), (1.25, 2, 1.5, 4, math.pi)):
         folded = scene.motion([t]).pose[0].copy()
         angle = folded[1, 2]
@@ -200,10 +198,10 @@ def test_cranks_that_start_upright_at_rest_do_not_move():
 
 
 def test_segment_masses_sum_to_one_and_radii_of_gyration_agree_with_winters_table() -> None:
-    """Winter's third column has the radius of gyration about an end of the segment."""
+    """The third column has radii of gyration about the proximal end."""
     assert HEAD_ARMS_TRUNK.mass + 2 * THIGH.mass + 2 * SHANK_AND_FOOT.mass == pytest.approx(1.0, abs=1e-12)
     for segment, about_the_end in ((HEAD_ARMS_TRUNK, 0.798), (THIGH, 0.540), (SHANK, 0.528), (SHANK_AND_FOOT, 0.735)):
-        # printed to three digits
+        # the table has three digits
         assert math.hypot(segment.centre, segment.gyration) == pytest.approx(about_the_end, abs=1e-3)
 
 
@@ -212,9 +210,9 @@ def test_the_swaying_person_starts_on_an_oscillating_mode() -> None:
     squares, shapes = modes_upright(scene)
     assert np.sum(squares < 0) == 2
     parts = np.abs(np.linalg.solve(shapes, scene.start[:5] - UPRIGHT))
-    # The start has six digits, so the other modes have amplitudes of about 1e-6.
+    # The start has six digits, so amplitudes of other modes are about 1e-6.
     assert np.all(np.delete(parts, 0) < 1e-5 * parts[0])
-    # In the linearised motion, the lifted leg is upright after a quarter period; the error is of third order in 0.1
+    # After a quarter period of the linearised motion the lifted leg is vertical, with an error of third order in 0.1
     # rad.
     quarter = math.pi / 2 / math.sqrt(-squares[0])
     aside = scene.states([quarter])[0][0] - np.array(UPRIGHT)

@@ -1,4 +1,4 @@
-"""What cannot be: each is refused in one sentence that says which value is wrong and why."""
+"""Invalid values are refused by a sentence that states the value and the reason."""
 
 from __future__ import annotations
 

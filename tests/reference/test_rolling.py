@@ -1,4 +1,4 @@
-"""Curves, where two of them touch, the rows of a roll, and bodies that roll, slip and hop under gravity."""
+"""Tests of curves, contacts, rows of a roll, and bodies that roll, slip and hop under gravity."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_tangent_and_curvature_are_derivatives_of_point_and_angle_by_arc_length(
     weights, shifts = np.array([1, -8, 8, -1]) / 12 / step, np.array([-2, -1, 1, 2]) * step
     way = sum(weight * curve.point(arc + shift) for weight, shift in zip(weights, shifts, strict=True))
     turned = sum(weight * curve.angle(arc + shift) for weight, shift in zip(weights, shifts, strict=True))
-    # The error is of fourth order in the step, relative to the smallest radius of curvature (about 0.1 m).
+    # The error is of fourth order in the ratio of the step to the smallest radius of curvature (about 0.1 m).
     along = np.stack([np.cos(curve.angle(arc)), np.sin(curve.angle(arc))], axis=-1)
     np.testing.assert_allclose(way, along, rtol=0, atol=1e-7)
     np.testing.assert_allclose(turned, curve.curvature(arc), rtol=1e-6, atol=1e-9)
@@ -92,18 +92,18 @@ def test_a_target_without_a_root_raises_arithmetic_error():
         solve_increasing(lambda x: (x, np.ones_like(x)), [np.nan], [0.0], 1.0)
 
 
-# Poses have errors of a few roundings of lengths near 1 m, times the number of turns.
+# Errors of poses are a few roundings of lengths near 1 m, times the number of turns.
 ROUNDING = 1e-13
 
 
 def test_the_contact_rate_of_a_hypocycloid_is_three_sevenths():
-    # Erratum 4: the rate is 3/7 with the ring's negative curvature, and 0.2308 with a positive curvature.
+    # By erratum 4 the rate is 3/7 with the ring's negative curvature, and 0.2308 with a positive curvature.
     assert float(Rolling.at_arcs(Circle(0.3), Ring(1.0)).contact(1.0).rate) == pytest.approx(3 / 7, abs=1e-15)
 
 
 def test_the_contact_of_a_disc_in_a_hole_of_nearly_its_size_is_accurate():
     rolling, clearance = Rolling.at_arcs(Circle(1.0), Ring(1.0 + 2.0**-20)), 2.0**-20
-    # The contact goes round the hole 1 / clearance times as fast as the disc rotates; the angle is rounded once.
+    # The contact goes round the hole 1 / clearance times as fast as the disc rotates.
     arc = float(rolling.contact(rolling.theta + 2.0**-10).ground_arc)
     assert arc == pytest.approx(2.0**-10 * (1 + clearance) / clearance, rel=1e-12)
 
@@ -124,7 +124,7 @@ def test_an_ellipse_in_a_tight_ring_rolls_until_the_curvatures_are_equal():
     shape, ring = Ellipse(0.5, 0.3), Ring(0.7)
     for start in (0.0, 0.1, -0.1):
         rolling = Rolling.at_arcs(shape, Placed(ring), 0.0, start)
-        # The rolling ends where the ellipse has the curvature of the ring, at the nearest point on either side.
+        # On either side the rolling ends at the nearest point with the ring's curvature.
         ends = np.array(rolling._parameter_limits)
         assert shape.curvature_of(ends) == pytest.approx([1 / 0.7, 1 / 0.7], rel=1e-8)
         assert np.ptp(shape.arc_of(ends)) < shape.length / 2
@@ -198,7 +198,7 @@ def test_an_ellipse_on_the_incline_rolls_to_minus_x_and_gets_faster():
     truth = scene.motion(np.array([0.0, scene.duration]))
     along, up = truth.pose[1, 0, :2] - truth.pose[0, 0, :2]
     assert along < -2
-    # The descent follows the slope up to 0.1 m, half of the difference of the two axes.
+    # The descent differs from the slope by at most 0.1 m, half of the difference of the two axes.
     assert up == pytest.approx(math.tan(scene.slope) * along, abs=0.11)
     assert abs(truth.twist[1, 0, 2]) > abs(truth.twist[0, 0, 2])
 
@@ -223,18 +223,20 @@ def test_the_horizon_of_a_rolling_scene_ends_at_the_first_slip_or_hop():
 def test_frequencies_of_small_oscillations_agree_with_closed_forms():
     a, b = 0.5, 0.3
     flat = RollingEllipse().motion_law
-    # Stiffness: (radius of curvature at the flat side - height of the centre) m g; inertia: about the contact.
+    # Stiffness: The stiffness is (radius of curvature at the flat side - height of the centre) m g; the inertia is
+    # about the contact.
     assert flat.small_frequency(0.0) ** 2 == pytest.approx(GRAVITY * (a * a / b - b) / ((a * a + b * b) / 4 + b * b))
     centred = RollingDisc(start_angle=-1.3)
     rest, near = math.pi / 2, 0.4 - 0.15
     assert centred.motion_law.small_frequency(rest) ** 2 == pytest.approx(GRAVITY * 0.15 / (0.4**2 / 2 + near**2))
     inside = disc(0.3, Ring(1.0), 0.0, math.pi / 2, ground_arc=math.pi / 2)
-    # A disc of radius r in a hole of radius R: omega^2 = g / (1.5 (R - r)), for any coordinate.
+    # A disc of radius r in a hole of radius R has omega^2 = g / (1.5 (R - r)).
     assert inside.small_frequency(math.pi / 2) ** 2 == pytest.approx(GRAVITY / (1.5 * 0.7), rel=1e-12)
 
 
 def watched(scene, looks=4001):
-    """Intervals of a sampled motion in which the contact first has to pull, and first needs more than its friction."""
+    """The sampling intervals in which the contact first has to pull and in which it first needs more than its
+    friction."""
     t = np.linspace(0, scene.duration, looks)
     tangent, normal = scene.motion_law.forces(t)
     rounding = 1e-11 * (1 + scene.friction) * np.abs([tangent, normal]).max()

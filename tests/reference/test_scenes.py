@@ -1,6 +1,6 @@
-"""What holds of every scene's truth, asked by rules that know no scene: start, joints, Newton's law, energy, digits.
+"""Tests of start, joints, Newton's law, energy and accuracy of every scene's reference motion.
 
-Accelerations are differences of the truth's own twists, so that no formula of a scene is taken on trust.
+Accelerations are finite differences of twists, so the tests do not use the scenes' formulas.
 """
 
 from __future__ import annotations
@@ -36,13 +36,12 @@ from reference.trajectory import Trajectory, energy, joint_gap, slip
 from tests.mechanisms import SCENES_OF_LIMITS
 from tests.present import present
 
-# A triple-rocker: released at this angle, the crank reaches both of its limits within two seconds.
+# A triple-rocker whose crank reaches both limits within two seconds.
 TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1), start=0.2, duration=2.0)
 TURNED = FreeFourBar(
     *(0.5, 0.9, 0.8, (-0.6, 0.7)), branch=-1, rate=-4.0, density=(1.0, 3.0, 0.5), start=1.0, gravity=(3.0, -8.0)
 )
-# The scenes of the catalogue have the chapter's numbers. These scenes have other signs and no zeros, which could hide
-# an error.
+# These scenes have other signs than the catalogue's, and no zeros, which could hide an error.
 OTHERS: tuple[Scene, ...] = (
     *(TRIPLE_ROCKER, TURNED, DrivenFourBar(rate=-7.0, branch=-1, revolutions=0.5)),
     DrivenFourBar(1.0, 0.9, 1.1, (0.3, -0.4), revolutions=2.0, density=(1.0, 2.0, 3.0)),
@@ -66,7 +65,7 @@ OTHERS: tuple[Scene, ...] = (
     TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, mass=60.0, height=1.6, hip_y=0.72),
 )
 ALL = (*SCENES, *SCENES_OF_LIMITS, *OTHERS)
-# Freedoms of configuration and of velocity by the scene's name. A chain has one freedom for each link.
+# Scene's name to freedoms of configuration and of velocity. A chain has one freedom for each link.
 FREEDOMS: dict[str, tuple[int, int]] = {
     **dict.fromkeys(("driven_four_bar", "parallelogram", "overdriven_four_bar", "driven_slider_crank"), (0, 0)),
     **dict.fromkeys(("sleigh", "sleigh_backwards", "skate_on_slope"), (3, 2)),
@@ -74,7 +73,7 @@ FREEDOMS: dict[str, tuple[int, int]] = {
     **{"car_and_trailer": (4, 1), "cart": (5, 2), "elliptic_gears": (0, 0), "held_by_skates": (3, 0)},
     **{"person_swaying": (5, 5), "person_one_foot": (5, 5), "person_two_feet": (3, 3)},
 }
-NEWTON = 1e-8  # relative to the largest force: the error of the finite differences of twists
+NEWTON = 1e-8  # Error of finite differences of twists, relative to the largest force.
 
 
 def name_of(each: Scene) -> str:
@@ -85,9 +84,7 @@ each_scene = pytest.mark.parametrize("each", ALL, ids=name_of)
 
 
 def until(each: Scene) -> float:
-    """The end of the comparison [s]: at most one second, and before the time at which the ideal motion ends or stops
-    to be valid.
-    """
+    """The end of the test [s], which is at most one second and before the ideal motion ends or is not valid."""
     stops = (getattr(each, "stopping_time", math.inf), getattr(each, "corner", math.inf))
     return min(each.duration, each.horizon, each.comparable_until, 1.0, *(0.9 * stop for stop in stops))
 
@@ -105,12 +102,12 @@ def known(each: Scene) -> tuple[Mechanism, Trajectory, np.ndarray, np.ndarray]:
 
 
 def truth_error(each: Scene) -> Callable[[np.ndarray], np.ndarray] | None:
-    """The function that bounds the error of an integrated reference motion; None for a closed form."""
+    """The function that bounds the error of an integrated reference motion, or None for a closed form."""
     return getattr(each, "truth_error", None) or getattr(getattr(each, "motion_law", None), "truth_error", None)
 
 
 def fastest(mechanism: Mechanism, motion: Trajectory) -> float:
-    """The largest rotation rate, or speed over length [1/s], at least the inverse of the mechanism's time scale."""
+    """The largest of rotation rates, speeds over length, and the inverse of the mechanism's time scale [1/s]."""
     return max(float(np.abs(motion.twist / mechanism.pose_unit).max()), 1 / mechanism.time_scale)
 
 
@@ -142,7 +139,7 @@ def off_newton(mechanism: Mechanism, motion: Trajectory, change: np.ndarray) -> 
 def test_a_scenes_motion_starts_at_the_mechanisms_state_and_satisfies_its_joints(each: Scene) -> None:
     mechanism, motion, rate, _ = known(each)
     start = each.motion([0.0])
-    # Rounding of positions and angles. The reference motion may begin with a rounding of its own coordinates.
+    # The reference motion may begin with a rounding of its coordinates.
     for found, own in ((start.pose[0], mechanism.pose), (start.twist[0], mechanism.twist)):
         assert np.abs(found - own).max() < 3e-14 * (1 + np.abs(own).max())
     assert off_the_joints(mechanism, motion) < 1e-13
@@ -161,7 +158,8 @@ def test_a_scenes_reactions_satisfy_newtons_law(each: Scene) -> None:
 
 
 def told(each: Scene, t: np.ndarray) -> np.ndarray | None:
-    """The accelerations from which the scene computes its reactions; None if the scene needs no accelerations."""
+    """The accelerations from which the scene computes its reactions, or None if the scene does not use
+    accelerations."""
     if isinstance(each, FourBarScene):
         return each._bodies(each._angles(t))[2]  # pyright: ignore[reportAttributeAccessIssue]
     return each.placement(t)[2] if isinstance(each, PlacedScene) else None
@@ -197,11 +195,11 @@ def test_lagrange_multipliers_give_the_same_motion_as_the_scene(each: Scene) -> 
     assert reaction.max(initial=0.0) <= 1e-8 * np.nanmax(np.abs(exact.reaction[met]), initial=0.0)
 
 
-# One scene of each name, since the bound of an integration is computed by the same rule for all numbers.
+# One scene of each name suffices, since the bound is computed by the same rule for all numbers.
 @pytest.mark.parametrize("each", {each.name: each for each in ALL[::-1] if truth_error(each)}.values(), ids=name_of)
 def test_the_error_bound_of_an_integrated_reference_motion_is_small(each: Scene) -> None:
-    # The tolerance is 1e-13 per step in several hundred steps. For a standing knee a deviation grows by a factor of
-    # e in 0.03 s.
+    # The tolerance is 1e-13 per step in several hundred steps. A deviation of a person's knee grows by a factor of e in
+    # 0.03 s.
     last = min(each.horizon, each.duration, 0.9 * getattr(each, "corner", math.inf))
     stated = present(truth_error(each))(np.linspace(0.0, last, 9))
     assert stated.max() < (1e-9 if each.name == "person_swaying" else 1e-10)

@@ -1,7 +1,7 @@
-"""Scenes in other units: the motion of a mechanism of nanometres or gigametres is the scaled motion in metres.
+"""Tests that a scene with lengths of nanometres or gigametres has the scaled motion.
 
-A change of unit by a power of two changes no digit of a product, sum or root. So a difference shows a constant in the
-code that depends on a unit.
+A change of unit by a power of two changes no digit of a product, sum or root. So any difference is caused by a constant
+that depends on a unit.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from tests.mechanisms import SCENES_OF_LIMITS
 
-# Exponents of length, time and mass in the unit of each field; fields without a unit are absent.
+# Field names to the exponents of length, time and mass in the field's unit, for fields with a unit.
 LENGTH, TIME, MASS = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 RATE, SPEED, PULL, INERTIA = (0, -1, 0), (1, -1, 0), (1, -2, 0), (2, 0, 1)
 _METRES = (
@@ -35,9 +35,9 @@ UNITS = {
     **{"speed": SPEED, "gravity": PULL, "density": (-1, 0, 1), "stiffness": (0, -2, 1), "torque": (2, -2, 1)},
 }
 OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
-POSES = ("start", "pose")  # Fields with x, y and angle.
-# Units of length [m], time [s] and mass [kg]. No sum of their exponents with small integer factors is zero, so that
-# errors in two exponents cannot cancel.
+POSES = ("start", "pose")  # Fields whose values are x, y and angle.
+# Units of length [m], time [s] and mass [kg]. Small integer multiples of their binary exponents do not add up to zero, so
+# that errors in two exponents cannot cancel.
 SCALES = {"small": (2.0**-30, 2.0**-17, 2.0**23), "large": (2.0**30, 2.0**19, 2.0**-13)}
 
 
@@ -48,7 +48,7 @@ def scaled(value, factor):
 
 
 def in_other_units(scene: Scene, unit: tuple[float, float, float]) -> Scene:
-    """The same scene with its numbers in these units of length [m], time [s] and mass [kg]."""
+    """The scene with its numbers in these units of length [m], time [s] and mass [kg]."""
     changes = {}
     for field in fields(scene):  # pyright: ignore[reportArgumentType] (each scene's class is a dataclass)
         value = getattr(scene, field.name)
@@ -89,9 +89,9 @@ def difference(scene: Scene, unit: tuple[float, float, float]) -> float:
     return max(parts)
 
 
-# The crank that is driven beyond its limit is left out, since its motion ends.
+# The overdriven crank is left out, since its motion ends.
 ALL = tuple(scene for scene in (*SCENES, *SCENES_OF_LIMITS) if scene.name != "overdriven_four_bar")
-# Scenes whose reference motion takes more than a second, or a fifth of a second in each of eight units.
+# Scenes whose reference motion takes a fifth of a second or more.
 COSTLY = (
     *("free_four_bar", "spinning_four_bar", "cart", "free_slider_crank", "slider_at_dead_centre", "pendulum_2"),
     *("pendulum_10", "pendulum_100", "pendulum_n", "rolling_cam", "rolling_in_ring", "rolling_ellipse"),

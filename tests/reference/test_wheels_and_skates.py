@@ -1,4 +1,4 @@
-"""Skates, sleighs, tows, trains and casters, and which of their velocity rows are integrable."""
+"""Tests of skates, sleighs, tows, trains and casters, and of the integrability of their velocity rows."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_a_fast_sleigh_moves_straight_after_its_settling_time():
         gone, settled = long[1] - long[0], long[1, 2]
         top = math.copysign(sleigh._top_speed * (1000 - 1e-2 - sleigh._settled), sleigh.offset)
         assert np.abs(gone[:2] - top * np.array([math.cos(settled), math.sin(settled)])).max() < 1e-14 * abs(top)
-    # The quadrature and the straight motion agree at a time after the settling time.
+    # After the settling time the quadrature and the straight motion agree.
     sleigh = ChaplyginSleigh()
     later = sleigh._settled + 1.0
     assert abs(sleigh._moved(later) - sleigh.skate_pose(later)[0] @ [1, 1j, 0]) < 1e-13
@@ -114,7 +114,7 @@ def test_a_trailer_behind_a_circling_car_is_a_tow(hitch, speed):
     tow = Tow(3.0, 0.7 - direction, pace / curvature, (0.0, 0.0, direction))
     assert np.abs(tow.heading(pace * speed * t) - driven.pose[:, 1, 2]).max() < 2e-12
     assert driven.error.max() < 2e-11
-    if speed > 0:  # steady state: v sin b - h w cos b = L w
+    if speed > 0:  # steady state with v sin b - h w cos b = L w
         settled = -(math.asin(3.0 * curvature / pace) + math.atan(hitch * curvature))
         assert car.drive(speed, 0.3, (0, 0, 0), (0.4,), [300.0]).bends[0, 0] == pytest.approx(settled, abs=1e-11)
 
@@ -141,7 +141,7 @@ def test_axles_of_a_car_with_trailers_have_no_lateral_velocity():
 def test_the_jackknife_time_of_a_reversing_trailer_agrees_with_the_closed_form():
     car = CarWithTrailers(2.0, (1.5,), (0.0,))
     driven = car.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [10.0, 20.0])
-    # tan(psi/2) is proportional to exp(s/L), and it is 1 at a right angle.
+    # tan(psi/2) is proportional to exp(s/L) and is 1 at a right angle.
     assert driven.jackknifed_at == pytest.approx(-1.5 * math.log(math.tan(0.005)), abs=1e-10)
     assert driven.bends[-1, 0] == pytest.approx(2 * math.atan(math.tan(0.005) * math.exp(20 / 1.5)), abs=1e-10)
     assert car.drive(1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [20.0]).jackknifed_at is None
@@ -175,7 +175,7 @@ def test_casters_turn_by_pi_when_the_cart_reverses():
 
 
 def test_the_wheels_and_kingpins_of_a_cart_are_at_hand_computed_points():
-    """The points [m] from each body's centre of mass are computed by hand, without `Casters`."""
+    """The points [m] from each centre of mass are computed by hand, without `Casters`."""
     cart = Cart(centre=0.3, front=0.8, width=0.5, trail=0.12, caster_centre=0.04, redundant=True).mechanism()
     points = {joint.name: joint.second_point for joint in cart.joints if isinstance(joint, Skate)}
     assert points["left wheel"] == pytest.approx((-0.3, 0.25))
@@ -219,7 +219,7 @@ def test_rows_with_a_velocity_component_are_skates_and_not_integrable(row):
     for place in RANDOM.normal(size=(4, 3)):
         body = Body("body", 1.0, 1.0, tuple(place.tolist()))
         held = Mechanism((body,), (skate,)).rows(place[None])[0]
-        # The bound is the rounding of the skate's point and angle, relative to the row.
+        # The error is the rounding of the skate's point and angle, relative to the row.
         assert held == pytest.approx(one_form(row)(place)[0] / size, abs=1e-15 * (1 + np.abs(row).max() / size))
         assert frobenius(row, place) == pytest.approx(-(size**2), rel=1e-13)
     unit = tuple(number / max(map(abs, row)) for number in row)
@@ -249,7 +249,7 @@ def test_a_row_that_is_not_exact_may_be_integrable():
 
 
 def test_a_row_with_zero_obstruction_at_one_place_only_is_not_integrable():
-    """The row w = dy + x^2 dtheta has w . curl w = 2 x, which is zero only at x = 0."""
+    """The row w = dy + x^2 dtheta has dot(w, curl w) = 2 x, which is zero only at x = 0."""
 
     def deceiving(place):
         x = place[..., 0]

@@ -89,8 +89,8 @@ class RollingBody(Valid):
 
     @cached_readonly
     def _units(self) -> Array:
-        """The units of theta and theta'. The unit of theta' is at least the rate that a rounding of the start angle
-        causes near an equilibrium."""
+        """The units of theta and theta'. The tolerance of theta' must not be below the rate that rounding of the start
+        angle causes near an equilibrium."""
         uncertain = np.finfo(float).eps * self._pace_of_rest / gauss.WINDOW_TOLERANCE
         return np.maximum(units_of_motion(self._rates, self.start), [0.0, uncertain])
 

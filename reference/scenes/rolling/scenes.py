@@ -1,6 +1,6 @@
-"""Scenes of bodies that are not round, or eccentric, rolling under gravity on flat and on curved ground.
+"""Scenes of bodies that are not round, or eccentric, and roll under gravity on flat and on curved ground.
 
-Two scenes in which methods fail: a disc in a hole of nearly its size, and a square that rolls to its corner.
+Methods fail in two scenes: a disc in a hole of nearly the same size, and a square that rolls to its corner.
 """
 
 from __future__ import annotations
@@ -211,10 +211,10 @@ Clearance = Annotated[float, Rule(lambda value: 0 < value < 1, "between 0 and 1"
 
 @dataclass(frozen=True)
 class DiscInHole(RollingScene):
-    """A round disc that rolls without gravity in a hole, whose radius is larger by the fraction `clearance` of itself.
+    """A round disc that rolls without gravity in a hole, with (hole - radius) / hole = `clearance`.
 
-    The disc rotates at a constant rate w; the contact and the disc's centre go round at the much higher rate of about w
-    / clearance.
+    The disc rotates at a constant rate w; the contact and the disc's centre go round at the much higher rate w /
+    clearance.
     """
 
     name: ClassVar[str] = "disc_in_hole"

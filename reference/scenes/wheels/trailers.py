@@ -1,6 +1,6 @@
-"""Towed wheels: one drawbar in closed form, and a car or tricycle with its trailers as kinematics.
+"""Towed wheels: the closed form of one drawbar, and the kinematics of a car or tricycle with trailers.
 
-Formulas and letters: "Tows and trailers" in `reference/scenes/derivations.md`.
+Formulas and letters: `reference/scenes/derivations.md` has the derivation.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from reference.validators import NOT_FINITE, Rule, from_to, of_shape
 Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]
 
-# Argument m s of the hyperbolic functions up to which their direct formulas have no cancellation.
+# Argument m s up to which the direct formulas with hyperbolic functions have no cancellation.
 SMALL_ARGUMENT = 0.5
 
 
@@ -31,9 +31,9 @@ SMALL_ARGUMENT = 0.5
 class Tow(Valid):
     """A drawbar of `length` L [m] whose hitch moves on a circle.
 
-    start: x, y [m] and direction of travel [rad] of the hitch. radius: radius R [m] of the circle, positive to the
-    left, negative to the right, infinite for a straight line. angle: psi [rad] at the start; 0 is straight behind the
-    hitch, and +-pi is ahead of the hitch. The value +-math.pi means exactly this unstable equilibrium. Raises
+    start: x, y [m] and direction of travel [rad] of the hitch. radius: radius R [m] of the circle, which is positive to
+    the left, negative to the right and infinite for a straight line. angle: psi [rad] at the start, which is 0 behind
+    the hitch and +-pi ahead of the hitch. The value +-math.pi means exactly this unstable equilibrium. Raises
     InvalidMechanism for a length that is not positive, a radius of 0 or NaN, or an angle beyond +-pi.
     """
 
@@ -57,7 +57,7 @@ class Tow(Valid):
 
     @cached_property
     def _start(self) -> tuple[float, float, float]:
-        """sin and cos of psi at the start, and -L psi' there."""
+        """sin(psi), cos(psi) and -L psi' at the start."""
         sine = 0.0 if abs(self.angle) == math.pi else math.sin(self.angle)
         return sine, math.cos(self.angle), sine + self.length * self.curvature
 
@@ -66,13 +66,15 @@ class Tow(Valid):
         """psi [rad, not wrapped] after the hitch has moved by the distance s (...) [m], which is negative backwards."""
         distance = np.asarray(distance, dtype=float)
         across, along = self._half_angle_vector(distance)
-        # The angle of (q, p) is psi / 2 and monotonic. It stays below pi if the discriminant is not negative.
+        # The angle of (q, p) is psi / 2, and it is monotonic. It is always below pi if the discriminant is not
+        # negative.
         half_turns = np.round(self._rate * distance / math.pi) if self._discriminant < 0 else 0.0
         return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
 
     @cached_property
     def _rate(self) -> float:
-        """The mean rate of the angle of (q, p) [rad/m] for a negative discriminant: the wheel turns without end."""
+        """The mean rate of the angle of (q, p) [rad/m] for a negative discriminant, for which the wheel turns without
+        end."""
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
     def _remainder(self, distance: Array) -> Array:
@@ -80,7 +82,7 @@ class Tow(Valid):
         return self._rate * distance - np.round(self._rate * distance / math.pi) * math.pi
 
     def _half_angle_vector(self, distance: Array) -> tuple[Array, Array]:
-        """(q, p) up to a common factor; it is a unit vector at the start, in components across and along its start."""
+        """(q, p) times a common factor, in components across and along its direction at the start."""
         sine, cosine, swing = self._start
         if self._discriminant < 0:
             remainder = self._remainder(distance)
@@ -90,12 +92,12 @@ class Tow(Valid):
         root = math.sqrt(self._discriminant)  # 2 L m
         argument_size = root * np.abs(distance) / (2 * self.length)
         is_small = argument_size < SMALL_ARGUMENT
-        # tanh(m s)/(2 L m), with its limit for m = 0.
+        # tanh(m s)/(2 L m), or its limit if m = 0.
         argument = np.where(is_small & (argument_size > 0), argument_size, 1.0)
         tangent = distance / (2 * self.length) * np.where(argument_size > 0, np.tanh(argument) / argument, 1.0)
-        # For large arguments the growing and the decaying exponential are separate, since tanh = 1 would lose
-        # the digits of a start near the unstable equilibrium. The smaller of the two numbers root + cosine and
-        # root - cosine is their product divided by the larger one, without cancellation.
+        # For large arguments the exponentials are separate, since tanh = 1 would lose the digits of a start near the
+        # unstable equilibrium. The smaller of root + cosine and root - cosine is the product of both divided by the
+        # larger number.
         product = swing * (sine - self.length * self.curvature)
         growing = root + cosine if cosine >= 0 else product / (root - cosine)
         decaying = root - cosine if cosine <= 0 else product / (root + cosine)
@@ -111,8 +113,7 @@ class Tow(Valid):
         distance = np.asarray(distance, dtype=float)
         if self._discriminant >= 0:
             return self.start[2] + self.curvature * distance + self.relative_angle(distance)
-        # On a small circle the hitch's angle and psi nearly cancel, so their common part 2 rate s is left out
-        # of both.
+        # On a small circle the hitch's angle and psi nearly cancel, so 2 rate s, which is a part of both, is left out.
         across, along = self._half_angle_vector(distance)
         slower = 1 / (self.length**2 * (abs(self.curvature) + 2 * self._rate))  # |c| - 2 rate
         slow_part = math.copysign(1.0, self.radius) * (slower * distance + 2 * self._remainder(distance))
@@ -136,17 +137,18 @@ class Tow(Valid):
 
 @validated
 def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Positive) -> tuple[Any, Any]:
-    """Speed [m/s] and turning rate [rad/s] of a trailer's axle from those of the axle before it; bend [rad]."""
+    """Speed [m/s] and turning rate [rad/s] of a trailer's axle from those of the axle ahead and the joint angle `bend`
+    [rad]."""
     cosine, sine = np.cos(bend), np.sin(bend)
     return v * cosine + hitch * w * sine, (v * sine - hitch * w * cosine) / length
 
 
 @dataclass(frozen=True)
 class Convoy:
-    """The motion of a car and its trailers, and the first jack-knife.
+    """The motion of a car and its trailers, with the first jack-knife.
 
     t (times,) [s]; pose (times, vehicles, 3) [m, m, rad]: middles of the axles and headings; speed (times, vehicles)
-    [m/s] along the headings, which has the opposite sign for a folded trailer; error (times,) [m or rad]: bound on the
+    [m/s] along the headings, which changes sign for a folded trailer; error (times,) [m or rad]: bound on the
     integration error; jackknifed_at [s]: the first time at which a joint angle exceeds the limit; jackknifed: the
     number of that trailer, from 1.
     """
@@ -169,7 +171,7 @@ class CarWithTrailers(Valid):
     """A car with trailers.
 
     wheelbase [m] from rear axle to steered wheel; lengths [m] of the drawbars from hitch to axle; hitches [m]: distance
-    of each hitch behind the axle of the vehicle before it, negative if the hitch is ahead of that axle. Raises
+    of each hitch behind the axle of the towing vehicle, negative if the hitch is ahead of that axle. Raises
     InvalidMechanism for a length that is not positive, or if the numbers of lengths and hitches differ.
     """
 
@@ -188,7 +190,8 @@ class CarWithTrailers(Valid):
     def axle_rates(
         self, headings: Annotated[Complexes, of_shape("...", "vehicles")], speed: Complexes, turning_rate: Complexes
     ) -> tuple[Any, Any]:
-        """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles), from the car's."""
+        """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles), from speed and turning
+        rate of the car."""
         headings = np.asarray(headings)
         speeds, rates = [speed], [turning_rate]
         for index, (length, hitch) in enumerate(zip(self.lengths, self.hitches, strict=True)):
@@ -200,7 +203,7 @@ class CarWithTrailers(Valid):
 
     @validated
     def turning_rate(self, speed: Complexes, steering: Complexes) -> Any:
-        """The car's turning rate v tan(steering)/wheelbase [rad/s]; v: speed of the rear axle."""
+        """The car's turning rate v tan(steering)/wheelbase [rad/s] at the speed v of the rear axle."""
         return speed * np.tan(steering) / self.wheelbase
 
     @validated
@@ -216,7 +219,7 @@ class CarWithTrailers(Valid):
         """The motion at times t [s] from the pose `start` of the rear axle and joint angles `bends` [rad].
 
         speed [m/s] of the rear axle and steering [rad] are numbers or functions of time. A joint angle beyond `limit`
-        [rad] is a jack-knife. Its time is returned, and the motion of the ideal wheels goes on.
+        [rad] is a jack-knife. Its time is returned, and the ideal motion continues.
         """
         times = sample_times("car", t)
         if len(bends) != len(self.lengths):
@@ -253,7 +256,7 @@ class CarWithTrailers(Valid):
         return Convoy(times, np.stack(poses, axis=1), speeds, error, when, which)
 
     def _jackknife(self, motion: Integrated | None, first: Array, limit: float) -> tuple[float | None, int | None]:
-        """The first time at which a joint angle exceeds the limit, and the number of its trailer, from 1."""
+        """The first time at which a joint angle exceeds the limit, and the number of the trailer, from 1."""
 
         def spare(states: Array) -> Array:
             bends = np.diff(states[..., 3:], axis=-1)

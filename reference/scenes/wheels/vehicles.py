@@ -1,12 +1,12 @@
-"""Coasting vehicles: a car with locked steering and a trailer on a hitch, and a cart on free casters.
+"""Coasting vehicles: a car with locked steering and a trailer, and a cart on free casters.
 
 The car has one freedom of velocity, its rear axle's speed v along a circle, so the energy M(s) v^2/2 gives the speed at
-the distance s. The trailer's direction is that of a towed drawbar (`trailers.Tow`) whose hitch moves on a circle, and
-t(s) = int sqrt(M(s)/M(0)) ds / v(0) is inverted. No equation of motion is solved.
+the distance s. The trailer is a towed drawbar (`trailers.Tow`) whose hitch moves on a circle. The function t(s) = int
+sqrt(M(s)/M(0)) ds / v(0) is inverted, and no equation of motion is solved.
 
-A caster is a drawbar towed by its kingpin; it swings round in reverse. Its wheel is `trail` c behind its kingpin. The
-kingpin is at (x, y) from the middle of the rear axle, which has the speed u and the turning rate w; beta is the
-caster's direction (wheel to kingpin) relative to the cart: w + beta' = (x w cos beta - (u - y w) sin beta)/c.
+A caster is a drawbar that its kingpin tows, and swings round in reverse. The wheel is `trail` c behind the kingpin. The
+kingpin is at (x, y) from the middle of the rear axle, which has the speed u and the turning rate w; With the caster's
+direction beta (wheel to kingpin) relative to the cart, w + beta' = (x w cos beta - (u - y w) sin beta)/c.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ Array = NDArray[np.float64]
 class CarAndTrailer(Scene):
     """A coasting car with locked steering, and its trailer.
 
-    masses [kg], inertias [kg m^2] and centres of mass [m] ahead of the axle, for the car and for the trailer; wheelbase
+    For the car and the trailer: masses [kg], inertias [kg m^2] and centres of mass [m] ahead of the axle. wheelbase
     [m]; steering [rad] of the front wheel; hitch [m] behind the car's rear axle; length [m] from hitch to the trailer's
-    axle; speed [m/s] of the rear axle (negative: backwards, unstable) and bend [rad], the trailer's direction minus the
-    car's, at t = 0; pose of the rear axle. The two wheels of an axle have dependent rows: one is modelled, or with
-    `redundant` both, `track` [m] apart. Raises InvalidMechanism for numbers not finite, masses or lengths not positive,
-    or steering of a right angle or more.
+    axle. At t = 0: speed [m/s] of the rear axle (negative speed is backwards and unstable), bend [rad], which is the
+    trailer's heading minus the car's heading, and pose of the rear axle. The two wheels of an axle have dependent rows,
+    so one wheel is modelled. With `redundant` both are, `track` [m] apart. Raises InvalidMechanism for steering of a
+    right angle or more.
     """
 
     name: ClassVar[str] = "car_and_trailer"
@@ -79,7 +79,8 @@ class CarAndTrailer(Scene):
 
     @cached_property
     def _tow(self) -> tuple[Tow, float, float]:
-        """The drawbar, the hitch's path length per metre of the rear axle's, and the heading's offset [rad]."""
+        """The drawbar, the hitch's path length per metre of the rear axle's path, and the offset [rad] of the trailer's
+        heading."""
         pace = math.hypot(1.0, self.hitch * self.curvature)
         direction = self.pose[2] - math.atan(self.hitch * self.curvature)
         heading = self.pose[2] + self.bend
@@ -88,7 +89,7 @@ class CarAndTrailer(Scene):
         return Tow(self.length, angle, radius, (0.0, 0.0, direction)), pace, heading - direction - angle
 
     def _headings(self, way: Array) -> Array:
-        """Headings of car and trailer (..., 2) [rad] after the distance s [m] of the rear axle."""
+        """Headings of car and trailer (..., 2) [rad] after the rear axle has moved by s [m]."""
         tow, pace, turns = self._tow
         return np.stack([self.pose[2] + self.curvature * way, tow.heading(pace * way) + turns], axis=-1)
 
@@ -117,7 +118,7 @@ class CarAndTrailer(Scene):
 
     @cached_property
     def _stretch(self) -> Antiderivative:
-        """int sqrt(M/M(0)) ds over the distance s [m] of the rear axle."""
+        """The integral of sqrt(M/M(0)) over the rear axle's distance s [m]."""
         sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         shortest = min(self.length, 1 / (abs(self.curvature) + 1e-9))
         return Antiderivative(lambda r: np.sqrt(self.apparent_mass(sign * r) / first), shortest)
@@ -180,7 +181,8 @@ Input = float | Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Casters(Valid):
-    """Kingpins at `places` [m] from the middle of the fixed axle, x ahead, y to the left; all with one trail [m]."""
+    """Casters of one trail [m] with kingpins at `places` (x ahead, y to the left) [m] from the middle of the fixed
+    axle."""
 
     places: tuple[Vector, ...]
     trail: Positive
@@ -194,7 +196,7 @@ class Casters(Valid):
 
     @validated
     def tow(self, caster: int, angle: float, speed: float, turning_rate: float) -> tuple[Tow, float]:
-        """The caster as a tow for a constant speed and turning rate, and its kingpin's speed [m/s].
+        """The caster as a `Tow` for a constant speed and turning rate, and the kingpin's speed [m/s].
 
         The caster's angle beta at time t is then tow.relative_angle(kingpin speed * t) + (angle - tow.angle).
         """
@@ -207,7 +209,7 @@ class Casters(Valid):
 
     @validated
     def swing(self, angles: tuple[float, ...], speed: Input, turning_rate: Input, t: Times) -> tuple[Array, Array]:
-        """Angles beta (times, casters) [rad, not wrapped] from `angles` at t = 0, and the integration's error (times,).
+        """Angles beta (times, casters) [rad, not wrapped] from `angles` at t = 0, and a bound (times,) on their error.
 
         speed [m/s] and turning_rate [rad/s] of the cart are numbers or functions of time. In reverse the caster swings
         round to pi from a small angle; an angle of exactly zero is an unstable equilibrium.
@@ -232,12 +234,12 @@ class Casters(Valid):
 class Cart(EmbeddedScene):
     """A coasting cart on two free casters.
 
-    c = (x, y, theta of the axle's middle; the casters' directions in the world), nu = (speed, turning rate). mass [kg]
-    and inertia [kg m^2] of the cart, its centre of mass `centre` [m] ahead of the axle; kingpins `front` [m] ahead,
-    `width` [m] apart; casters with their wheel `trail` [m] and centre of mass `caster_centre` [m] behind the kingpin.
-    speed [m/s] and turning_rate [rad/s] of the axle, angles [rad] of the casters relative to the cart (0: wheel behind
-    the kingpin) at t = 0. The two wheels of the fixed axle have dependent rows: one is modelled, or with
-    `redundant` both. Raises InvalidMechanism for numbers not finite or lengths and masses not positive.
+    c is x, y and theta of the axle's middle and the casters' directions in the world; nu is (speed, turning rate). mass
+    [kg] and inertia [kg m^2] of the cart; its centre of mass is `centre` [m] ahead of the axle. The kingpins are
+    `front` [m] ahead of the axle and `width` [m] apart. A caster's wheel is `trail` [m] and its centre of mass
+    `caster_centre` [m] behind the kingpin. At t = 0: speed [m/s] and turning_rate [rad/s] of the axle, and angles [rad]
+    of the casters relative to the cart, which are 0 if the wheel is behind the kingpin. The two wheels of the fixed
+    axle have dependent rows, so one wheel is modelled. With `redundant` both are modelled.
     """
 
     name: ClassVar[str] = "cart"
@@ -304,7 +306,7 @@ class Cart(EmbeddedScene):
         return integrate(self.rates, self.start, until)
 
     def truth_error(self, t: ArrayLike) -> Array:
-        """A bound (times,) on the error of the motion [m, rad]: its change by a coarser tolerance."""
+        """A bound (times,) on the error of the motion [m, rad], from the difference to a larger tolerance."""
         return error_of(self.rates, self.start, self.times(t))
 
     def mechanism(self) -> Mechanism:
