@@ -1,4 +1,4 @@
-"""Tests of `reference`, `engines`, `reports` and `tools`; `wrong` has wrong models and adapters."""
+"""Tests of the reference, engines, reports and tools. The folder `wrong` has wrong models and adapters."""
 
 from pathlib import Path
 

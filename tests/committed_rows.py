@@ -17,7 +17,7 @@ from reports.model.page import Page
 from reports.model.tasks import Answer, Task, answered
 from tests import RESULTS
 
-KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations are strings in that module
+KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations of that module are strings
 
 
 def _lines(name: str) -> list[dict[str, str]]:
@@ -36,23 +36,23 @@ def _stored() -> dict[tuple[str, ...], list[dict[str, str]]]:
 
 
 def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
-    """The committed row of each cell for which one exists.
+    """Cells to their committed rows, for cells with a row.
 
     Cells that differ only in the scene's numbers or the engine's settings are distinguished by digests. If the settings
-    have changed, the only row with these numbers is used until the next publication.
+    have changed since the publication, a row with equal numbers is used if it is the only row.
     """
     return {cell: row for cell in cells if (row := _row(cell)) is not None}
 
 
 @cache
 def page_rows(page: Page) -> Mapping[Cell, Measurement]:
-    """The committed rows of a page's cells; cached, because a cell's key takes time."""
+    """The committed rows of a page's cells, cached, since cells' keys take time."""
     return committed_rows(shown_cells(page))
 
 
 @cache
 def answer_to(task: Task) -> Answer:
-    """A task's result; cached in the process, because engines take time."""
+    """A task's result, cached in the process, since engines take time."""
     return answered(task)
 
 

@@ -1,4 +1,4 @@
-"""Options and hooks of the test suite; only `-m crosscheck` loads the plugin of the grid."""
+"""Options and hooks of the test suite. Only `-m crosscheck` loads the plugin of the grid."""
 
 import os
 import signal
@@ -10,13 +10,13 @@ import pytest
 
 pytest_plugins = ["pytester"]
 
-# Tests that a shell starts in the background ignore Ctrl-C, and so would the programs that they start.
+# Tests that a shell starts in the background ignore Ctrl-C, and their programs would inherit this.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-os.environ.pop("COLUMNS", None)  # unset, since tables depend on the width of the user's window
+os.environ.pop("COLUMNS", None)  # tables depend on the width of the user's window
 
-# The longest test files. They are run first, so that no worker runs one of them after the others have ended.
+# The longest test files. They are run first, so that the workers end at about the same time.
 LONGEST_FILES = (
     *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
     *("promised", "matrix", "random", "scenes", "conformance"),
@@ -29,14 +29,14 @@ GRID_FILE = "test_crosscheck.py"
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Ignore other files if `-m` selects the grid alone, since the import of all files takes ten seconds."""
+    """If `-m` selects only the grid, ignore other files, whose import takes ten seconds."""
     is_grid_alone = config.getoption("-m") in ("crosscheck", "crosscheck and not slow")
     is_other = collection_path.name.startswith("test_") and collection_path.name != GRID_FILE
     return True if is_grid_alone and is_other else None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the longest files, without a change of the order within a file."""
+    """Move the longest files to the front; keep the order within a file."""
     ranks = {f"test_{name}.py": rank for rank, name in enumerate(LONGEST_FILES)}
     items.sort(key=lambda item: ranks.get(Path(item.path).name, len(LONGEST_FILES)))
 
@@ -47,7 +47,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.fixture
 def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
-    """compare(name, text): fail unless tests/golden/name has this text; --renew-golden writes it."""
+    """compare(name, text) fails unless tests/golden/name has this text. The option --renew-golden writes the text."""
 
     def compare(name: str, text: str) -> None:
         if request.config.getoption("--renew-golden"):
@@ -67,7 +67,7 @@ def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Workforce(1, in_process))
     monkeypatch.setattr(worker, "start_early", lambda *modules: None)
-    monkeypatch.setattr(supervisor, "supervise", in_process)  # for functions that commands import when they are called
+    monkeypatch.setattr(supervisor, "supervise", in_process)  # for functions that are imported when a command is called
     monkeypatch.setattr(walk, "supervise", in_process)
 
 

@@ -1,4 +1,4 @@
-"""Motions of MuJoCo models by equations without code of the judge: tree coordinates, multipliers, DOP853."""
+"""Motions of MuJoCo models by tree coordinates, multipliers and DOP853, without code of the judge."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -18,7 +18,7 @@ Rows = Callable[[Any, Any], tuple[Array, Array]]
 
 
 def connected(name: str | int) -> Rows:
-    """Rows of a connect between bodies or sites: velocity of its point on the first minus that on the second."""
+    """Rows of a connect between bodies or sites: the point's velocity on the first minus its velocity on the second."""
 
     def rows(model: Any, data: Any) -> tuple[Array, Array]:
         equality = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_EQUALITY, name) if isinstance(name, str) else name
@@ -32,19 +32,19 @@ def connected(name: str | int) -> Rows:
             mujoco.mj_jac(model, data, jac, None, at, body)
             mujoco.mj_jacDot(model, data, rate, None, at, body)
             out, rates = out + sign * jac, rates + sign * rate
-        flat = np.abs(out).max(axis=1) > 1e-6 * np.abs(out).max()  # without the row normal to the plane
+        flat = np.abs(out).max(axis=1) > 1e-6 * np.abs(out).max()  # the row normal to the plane is left out
         return out[flat], rates[flat] @ data.qvel
 
     return rows
 
 
 def coupled(*factors: float) -> Rows:
-    """The row of a linear relation of all coordinates."""
+    """The velocity row of a linear relation of all coordinates."""
     return lambda model, data: (np.array([factors], dtype=float), np.zeros(1))
 
 
 def equalities(model: Any) -> list[Rows]:
-    """The rows of all equalities of a model of hinges and slides: connects, and linear ones of joints and tendons."""
+    """The rows of all equalities in a model of hinges and slides, which are connects or linear in joints or tendons."""
 
     def factors(equality: int) -> Array:
         row = np.zeros(model.nv)
@@ -64,8 +64,8 @@ def equalities(model: Any) -> list[Rows]:
 
 
 def motion(model: Any, data: Any, constraints: list[Rows], t: Array) -> tuple[Array, Array]:
-    """Coordinates (times, nv) of a tree with these rows, from the state of `data`, and the forces of the rows (times,
-    rows). The mass matrix and the forces of gravity, springs, dampers and actuators are MuJoCo's.
+    """Coordinates (times, nv) of a tree with these rows and the rows' forces (times, rows), from the state of `data`.
+    MuJoCo computes the mass matrix and the forces of gravity, springs, dampers and actuators.
     """
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 

@@ -1,6 +1,6 @@
 """Motions of pymunk spaces without code of this suite: absolute coordinates, Lagrange multipliers, DOP853.
 
-Rows of joints are derivatives by complex steps; parameters are read from the space.
+Rows of joints are derivatives by complex steps. Parameters are read from the space.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ IMAGINARY_STEP = 1e-30
 
 
 class Equations:
-    """The rows and forces of a space; coordinates (3 bodies, columns) are x, y and angle of each body."""
+    """The rows and forces of a space. Coordinates (3 bodies, columns) are x, y and angle of each body."""
 
     def __init__(self, space: pymunk.Space) -> None:
         self.space, self.bodies = space, list(space.bodies)
@@ -100,17 +100,18 @@ class Equations:
         return out
 
     def _held(self, q: Array, speed: Array, wanted: Array) -> Array:
-        """The speeds or accelerations with the smallest change, by mass, that give the rows the rates `wanted`."""
+        """The speeds or accelerations with the smallest mass-weighted change for which the rows have the rates
+        `wanted`."""
         root = np.sqrt(self.inverse)
         rows = self._slopes(self._rows, q)
         return speed + root * np.linalg.lstsq(rows * root, wanted - rows @ speed, rcond=1e-11)[0]
 
     def nearest_speeds(self) -> Array:
-        """The speeds after the smallest impulse that satisfies the joints."""
+        """The nearest speeds that satisfy the joints."""
         return self._held(self.start, self.speed, self.rates)
 
     def accelerations(self, q: Array, speed: Array) -> Array:
-        step = 1e-3 / (np.abs(speed[2::3]).max() + 1e-6)  # an angle of 1e-3: the error of the stencil is 1e-12
+        step = 1e-3 / (np.abs(speed[2::3]).max() + 1e-6)  # 1e-3 rad, so the stencil's error is 1e-12
 
         def rates(ahead: float) -> Array:
             return np.imag(self._rows((q + (ahead + IMAGINARY_STEP * 1j) * speed)[:, None]))[:, 0] / IMAGINARY_STEP

@@ -1,4 +1,4 @@
-"""Mechanisms for tests of the core, with every joint and force class, and scenes in which methods fail."""
+"""Mechanisms with every joint and force class, and scenes in which methods fail."""
 
 from __future__ import annotations
 
@@ -41,14 +41,15 @@ def bar(
 
 
 def four_bar(crank_rate: float = 0.0, drive: float | None = None) -> Mechanism:
-    """The chapter's linkage at its start: B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0); rates by (18.70), (18.71)."""
+    """The chapter's linkage at the start with B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0) and rates by (18.70),
+    (18.71)."""
     b, c, d = (0.0, 0.4), (0.4, 0.8), (1.2, 0.0)
     bodies = (
         bar("crank", (0.0, 0.0), b, rate=crank_rate),
         bar("coupler", b, c, velocity=(-0.4 * crank_rate, 0.0), rate=-crank_rate / 2),
         bar("rocker", d, c, rate=crank_rate / 4),
     )
-    half = [body.mass / 2 for body in bodies]  # 1 kg/m: a bar's mass is its length
+    half = [body.mass / 2 for body in bodies]  # 1 kg/m, so mass equals length
     joints: tuple[Joint, ...] = (
         Pin("A", None, "crank", (0.0, 0.0), (-half[0], 0.0)),
         Pin("B", "crank", "coupler", (half[0], 0.0), (-half[1], 0.0)),
@@ -61,7 +62,7 @@ def four_bar(crank_rate: float = 0.0, drive: float | None = None) -> Mechanism:
 
 
 def pendulum(angle: float = -np.pi / 2 + 1.0, rate: float = 0.0, length: float = 1.0) -> Mechanism:
-    """One uniform bar that hangs from the origin at `angle` [rad] from +x."""
+    """A uniform bar that hangs from the origin at `angle` [rad] from +x."""
     end = (length * np.cos(angle), length * np.sin(angle))
     body = bar("bar", (0.0, 0.0), end, rate=rate)
     return Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-length / 2, 0.0)),), (0.0, -9.81))
@@ -70,7 +71,7 @@ def pendulum(angle: float = -np.pi / 2 + 1.0, rate: float = 0.0, length: float =
 def rolling_disc(
     rolling: Rolling, rate: float = 0.0, name: str = "disc", first: str | None = None
 ) -> tuple[Body, Roll]:
-    """A disc of 1 kg whose circle rolls at `rate` [rad/s] on a curve of `first` or the ground, and its joint."""
+    """A disc of 1 kg that rolls at `rate` [rad/s] on a curve of `first` or the ground, and the joint."""
     x, y, angle = (float(value) for value in rolling.pose(rolling.theta))
     vx, vy = (float(value) for value in rolling.velocity(rolling.theta, rate))
     inertia = cast(Circle, rolling.body).radius ** 2 / 2
@@ -78,7 +79,7 @@ def rolling_disc(
 
 
 def elbow() -> Mechanism:
-    """Two bars from the origin, with a drive at the pin between them."""
+    """Two bars from the origin with a drive at the pin between the bars."""
     upper, lower = bar("upper", (0.0, 0.0), (1.0, 0.0)), bar("lower", (1.0, 0.0), (1.0, -0.7), rate=2.0)
     joints = (
         Pin("A", None, "upper", (0.0, 0.0), (-0.5, 0.0)),
@@ -107,7 +108,7 @@ def world(name: str | None, point: Vector) -> Vector:
 
 
 def own(name: str | None, point: Vector) -> Vector:
-    """The coordinates [m] of a world point in the body's frame at the start."""
+    """The coordinates [m] of a world point in a body's frame at the start."""
     if name is None:
         return point
     x, y, angle = POSES[name]
@@ -120,7 +121,7 @@ def pin(name: str, first: str | None, second: str, point: Vector) -> Pin:
 
 
 def rod(name: str, first: str | None, second: str, first_point: Vector, second_point: Vector) -> Rod:
-    """A rod with the length between its points at the start."""
+    """A rod whose length is the distance of its points at the start."""
     length = math.dist(world(first, first_point), world(second, second_point))
     return Rod(name, first, second, first_point, second_point, length)
 

@@ -8,6 +8,6 @@ Value = TypeVar("Value")
 
 
 def present(value: Value | None) -> Value:
-    """The value; fails the test if it is None."""
+    """Return the value, or fail the test if it is None."""
     assert value is not None
     return value

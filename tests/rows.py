@@ -55,18 +55,19 @@ ROW = Measurement(
 
 
 def row(**changes: Any) -> Measurement:
-    """The row above with these fields changed."""
+    """The row `ROW` with these fields changed."""
     return replace(ROW, **changes)
 
 
 def row_of(method: str, **changes: Any) -> Measurement:
-    """A row of a method in two words, "mujoco tuned"."""
+    """A row of the method "mujoco tuned", whose name has two words."""
     engine, variant = method.split(" ", 1)
     return row(engine=engine, variant=variant, **changes)
 
 
 def falling(method: str, errors: Iterable[float], quantity: str = "angle", **changes: Any) -> list[Measurement]:
-    """A sweep with these errors at steps of 1e-1, 1e-2 ... s; the cost increases as the step decreases."""
+    """A sweep with these errors at steps of 1e-1, 1e-2, 1e-3 s and so on, with a cost that increases as the step
+    decreases."""
     return [
         row_of(method, **{"step": 10.0 ** -(i + 1), "every": 10**i, "cpu": 10.0 ** (i - 3), quantity: error, **changes})
         for i, error in enumerate(errors)
@@ -74,6 +75,6 @@ def falling(method: str, errors: Iterable[float], quantity: str = "angle", **cha
 
 
 def table(text: str) -> list[list[str]]:
-    """The cells of a Markdown table: the header, then the lines without the separator."""
+    """The cells of a Markdown table: the header, and the lines after the separator."""
     lines = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in text.splitlines()]
     return [lines[0], *lines[2:]]

@@ -1,4 +1,4 @@
-"""A scene and engines with known errors and known failures, for tests of the reports."""
+"""A scene, and engines with known errors and failures, for tests of the reports."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def in_process(work: Callable[[Any], Any], items: Iterable[Any], *_: Any, **__: 
 
 @dataclass(frozen=True)
 class Disc(Scene):
-    """A disc on a pin through its centre turns at a constant rate [rad/s], and the pin carries its weight."""
+    """A disc turns at a constant rate [rad/s] on a pin through its centre, which carries the weight."""
 
     name: ClassVar[str] = "disc"
     source: ClassVar[str] = "invented"
@@ -42,7 +42,7 @@ class Disc(Scene):
         return turning(self.mechanism(), times)
 
     def branch_of(self, pose: NDArray[np.float64]) -> NDArray[np.int_]:
-        """-1 beyond 2 rad, which the motion never reaches: a change of branch with satisfied joints."""
+        """Branch -1 begins at 2 rad, which the motion never reaches."""
         return np.where(pose[..., 0, 2] > 2.0, -1, 1)
 
 
@@ -73,7 +73,7 @@ class ToyRun:
 
 
 class Plain(Engine):
-    """Base of test engines with the simplest members of the contract except for name and model."""
+    """Base of test engines with simple members of the contract, without name and model."""
 
     packages = ()
 
@@ -121,7 +121,7 @@ class SlowToy(Toy):
 
 @dataclass(frozen=True)
 class FailingToy(Toy):
-    """An engine with the failure of its variant, a key of FAILURES."""
+    """An engine whose variant is a key of FAILURES."""
 
     def build(self, mechanism: Mechanism, dt: float) -> ToyRun:
         match self.variant:

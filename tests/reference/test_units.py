@@ -36,8 +36,8 @@ UNITS = {
 }
 OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
 POSES = ("start", "pose")  # Fields whose values are x, y and angle.
-# Units of length [m], time [s] and mass [kg]. Small integer multiples of their binary exponents do not add up to zero, so
-# that errors in two exponents cannot cancel.
+# Units of length [m], time [s] and mass [kg]. Small multiples of their binary exponents do not add up to zero, so that
+# errors in two exponents cannot cancel.
 SCALES = {"small": (2.0**-30, 2.0**-17, 2.0**23), "large": (2.0**30, 2.0**19, 2.0**-13)}
 
 

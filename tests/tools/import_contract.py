@@ -1,7 +1,7 @@
-"""The import contract of engines, for import-linter: they may import only an allow-list of the reference.
+"""The contract for import-linter that engines import only an allow-list of modules of the reference.
 
-A list of forbidden modules would not cover new ones. With an allow-list every closed form is refused, also when an
-adapter imports it through another module. pyproject.toml names this class and the list.
+A list of forbidden modules would not cover new modules. An allow-list refuses every closed form, also if an adapter
+imports it through another module. pyproject.toml names this class and has the list.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from importlinter import Contract, ContractCheck, fields, output
 
 
 class AllowListContract(Contract):
-    """`source` may import, also indirectly, of the package `within` only the modules that `allowed` names.
+    """From the package `within`, `source` may import only the modules in `allowed`, also indirectly.
 
-    An entry that ends in ".*" allows all modules of a package, the package itself included.
+    An entry that ends in ".*" allows a package with all its modules.
     """
 
     type_name = "allow_list"
@@ -42,7 +42,7 @@ class AllowListContract(Contract):
         return any(self._matches(name, entry) for entry in self._entries())
 
     def _entries(self) -> list[str]:
-        # An instance has the list itself in place of the field, which the type of the field does not express.
+        # An instance has a list in place of the field, which the field's type does not express.
         return [str(entry) for entry in cast(Iterable[object], self.allowed)]
 
     @staticmethod

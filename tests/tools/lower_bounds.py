@@ -1,4 +1,4 @@
-"""Print the oldest versions that pyproject.toml allows, as constraints for pip: `make lower` tests them."""
+"""Print the oldest versions that pyproject.toml allows as constraints for pip, for `make lower`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ PYPROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
 
 
 def lower_bounds(text: str) -> list[str]:
-    """'name==version' of every dependency of the project and of its extra `test`; ValueError for one without bound."""
+    """'name==version' of every dependency of the project and its extra `test`. Raises ValueError for a missing
+    bound."""
     project = tomllib.loads(text)["project"]
     out = []
     for requirement in (*project["dependencies"], *project["optional-dependencies"]["test"]):

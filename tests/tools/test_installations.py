@@ -1,8 +1,7 @@
-"""The wheel of this checkout and a third party's wheel in an environment of their own run, report and test.
+"""Tests of this checkout's wheel and a third party's wheel in a new environment.
 
-The third party's distribution is the code of our how-to pages: an engine, of which it registers two variants, and a
-scene with a page. The suite needs no change for it. Nothing comes from the network, and the environment is made once
-for this file.
+The third party's distribution has the code of our how-to pages: an engine with two variants and a scene with a page.
+The tests use no network and make the environment once.
 """
 
 from __future__ import annotations
@@ -23,13 +22,13 @@ import pytest
 from tests import ROOT
 from tests.reports.test_check import FOUR_BAR
 
-OLDEST_SETUPTOOLS = 77  # As in the build-system table of pyproject.toml.
-# Build and result folders, which are not committed, and folders that no wheel contains.
+OLDEST_SETUPTOOLS = 77  # The build-system table of pyproject.toml has this number.
+# Folders that are not committed, and folders that a wheel does not contain.
 LEFT_OUT_OF_CHECKOUT = (".*", "__pycache__", "build", "dist", "*.egg-info", "crosscheck-results", "tests")
 BUILD = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"
 THREE_STEPS = ("--every", "1", "--every", "3", "--every", "10")
 OUR_PACKAGES = ("engines", "reference", "reports")
-# Results in the wheel: the gate's baseline, and the sources of the pages of versions and of the atlas.
+# Folders of results in the wheel: the gate's baseline, and data for the pages of versions and of the atlas.
 SHIPPED_RESULTS = ("errors", "timings", "versions", "atlas")
 OUR_MODULES = ("planar_crosscheck.py", "planar_crosscheck_pytest.py")
 # Every warning is an error.
@@ -81,7 +80,8 @@ Their engine reaches {{ best("turning_wheel", "multipliers", "closed").angle | n
 {% endblock %}
 """
 THEIR_METHODS = ("multipliers default", "multipliers closed")
-# Several commands in one interpreter, because each start takes longer than the command; then its status in a line.
+# The program runs several commands in one interpreter, since each start takes longer than a command. It prints each
+# command's status in a line.
 COMMANDS_IN_ONE_PROCESS = """
 import json, sys
 from reports.cli.commands import invoke
@@ -91,7 +91,7 @@ for words in json.loads(sys.argv[1]):
 
 
 def write_their_distribution(folder: Path) -> Path:
-    """Write the third party's distribution, ready to be built."""
+    """Write the source of the third party's distribution."""
     pages = [
         (ROOT / "reports" / "site" / "howto" / f"add_{name}.md").read_text("utf-8") for name in ("an_engine", "a_scene")
     ]
@@ -105,7 +105,7 @@ def write_their_distribution(folder: Path) -> Path:
 
 
 def build_wheel(source: Path, folder: Path) -> Path:
-    """Build the distribution in `source`; skips the test where no wheel can be built."""
+    """Build the distribution in `source`. Skips the test if setuptools is missing or too old."""
     try:
         version = metadata.version("setuptools")
     except metadata.PackageNotFoundError:
@@ -118,10 +118,10 @@ def build_wheel(source: Path, folder: Path) -> Path:
 
 
 def create_environment(folder: Path, *wheels: Path) -> Path:
-    """The folder of programs of an environment with these wheels and with the packages that are installed here.
+    """Make an environment with these wheels and with the packages installed here; return its folder of programs.
 
-    A .pth file names the folders of these packages. Python does not read the .pth files in them, which lead to this
-    checkout. numba is hidden, because a new installation would compile its code for a quarter of a minute.
+    A .pth file names the folders of the installed packages. Python does not read the .pth files in these folders, which
+    lead to this checkout. numba is hidden, because a new installation would compile its code for a quarter of a minute.
     """
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
     programs = folder / ("Scripts" if os.name == "nt" else "bin")
@@ -154,7 +154,7 @@ def programs(wheel, tmp_path_factory):
 
 @pytest.fixture
 def call(programs, tmp_path):
-    """Runs an installed program in an empty folder, without this checkout; returns status, stdout and stderr."""
+    """Run an installed program in an empty folder without this checkout; return status, stdout and stderr."""
 
     def run(program, *words, folder=tmp_path, path=None):
         variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
@@ -206,7 +206,7 @@ def test_publishing_from_an_installation_and_a_foreign_package_with_one_of_our_n
     assert line.startswith(
         f"crosscheck: the package 'engines' is another one, at {tmp_path / 'engines'}, and ours is at "
     )
-    for program in (["crosscheck"], ["python", "-m", "planar_crosscheck"]):  # neither imports from the current folder
+    for program in (["crosscheck"], ["python", "-m", "planar_crosscheck"]):  # both ignore the current folder
         assert call(*program, "--help")[0] == 0
 
 
@@ -252,7 +252,7 @@ def test_the_gate_of_the_wheel_tests_their_engine_one_in_a_file_and_ours(call, t
     scenes = ("--scene", "turning_wheel", "--scene", "free_four_bar")
     status, out, err = call("python", *PYTEST, "-m", "crosscheck", *engines, *scenes)
     assert status == 0, out + err
-    # Four methods in two scenes, each against theory and against the baseline; and one test for missing cells.
+    # Four methods in two scenes are compared with theory and with the baseline; one more test is for missing cells.
     assert f"{4 * 2 * 2 + 1} passed" in out
     assert "multipliers half" in out
     assert "free_four_bar  pymunk tuned" in out

@@ -1,4 +1,4 @@
-"""Each deliberate mistake can be made in the present code, and names a test that exists."""
+"""Tests that every entry of the list of mistakes fits the code and names an existing test."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_every_mistake_fits_the_code_and_names_a_test(mistake):
     file, wrong = mistake.locate()
     assert ast.dump(ast.parse(wrong)) != ast.dump(ast.parse((ROOT / file).read_bytes()))
     if not mistake.survives:
-        path, *names = mistake.noticed_by.split("::")  # only a file: the mistake breaks its import
+        path, *names = mistake.noticed_by.split("::")  # a file without a test, since the mistake breaks its import
         text = (ROOT / path).read_text(encoding="utf-8")
         assert not names or f"def {names[-1]}(" in text
 

@@ -1,4 +1,4 @@
-"""Missing features of Windows and macOS, lower bounds of dependencies, and the layers of imports."""
+"""Tests without the features that Windows and macOS lack, of lower bounds, and of the layers of imports."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ import pytest
 from tests import ROOT
 from tests.tools.lower_bounds import PYPROJECT, lower_bounds
 
-# Removes what Windows lacks. Its worker processes import it first, so it is removed there too.
+# This program removes features that Windows lacks. Worker processes import it first, so the features are missing there
+# too.
 SCRIPT_WITHOUT_UNIX = """
 import multiprocessing
 import os
@@ -53,7 +54,7 @@ def test_cells_have_the_same_outcomes_without_fork_timers_and_most_signals(tmp_p
     folder = tmp_path / "Ergebnisse mit Größe"
     folder.mkdir()
     (folder / "script.py").write_text(SCRIPT_WITHOUT_UNIX, encoding="utf-8")
-    # An unusual folder for temporary files, and another locale.
+    # The folder for temporary files has an unusual name, and the locale is "C".
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(folder), "LC_ALL": "C", "PYTHONUTF8": "0"}
     environment |= {"PYTHONCOERCECLOCALE": "0", "PYTHONWARNINGS": "error"}
     command = [sys.executable, folder / "script.py", folder]
@@ -76,10 +77,10 @@ def test_every_dependency_has_a_lower_bound():
         lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')
 
 
-# By file, an import that a contract forbids.
+# File names to an import that a contract forbids there.
 FORBIDDEN = {
     "engines/extrapolated.py": "from reference.scenes.catalogue import SCENES",
-    "reference/rolling/roll.py": "import reference.scenes.rolling.body",  # engines reach it through this module
+    "reference/rolling/roll.py": "import reference.scenes.rolling.body",  # engines would import it indirectly
     "reference/mechanism.py": "import reports.model.page",
 }
 

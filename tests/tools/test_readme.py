@@ -1,4 +1,4 @@
-"""README, CONTRIBUTING and the lecture: their code runs, their claims and links are right; help imports little."""
+"""Tests of the code, claims and links in README, CONTRIBUTING and the lecture, and of the imports of help."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_the_python_example_runs_and_prints_a_small_error(capsys):
     (example,) = re.findall(r"```python\n(.*?)```", README_TEXT, re.DOTALL)
     exec(compile(example, "README.md", "exec"), {})
     printed = capsys.readouterr().out
-    # RK4 with a step of 1e-3 s and the stiffness of that step: 1e-6 to 1e-5.
+    # RK4 with a step of 1e-3 s has an error of 1e-6 to 1e-5.
     (angle,) = re.findall(r"^ *angle, rad +(\S+)", printed, re.MULTILINE)
     assert 0 < float(angle) < 1e-4
 
@@ -49,7 +49,7 @@ def test_the_readme_is_short_and_links_to_the_lines_to_paste_the_lecture_and_the
     assert [
         link for link in local - {f"reports/results/{name}" for name in written} if not (ROOT / link).exists()
     ] == []
-    for name in ("options", "close", "choose"):  # which another test pastes into a script
+    for name in ("options", "close", "choose"):  # another test pastes these lines into a script
         assert (LINE_FILES / f"{name}.txt").read_text(encoding="utf-8").strip() in README_TEXT
 
 
@@ -87,7 +87,7 @@ NOTEBOOK_CELLS = json.loads((ROOT / "lecture.ipynb").read_text(encoding="utf-8")
 
 @pytest.fixture(scope="module")
 def lecture() -> Any:
-    """The module of the notebook after all cells, and the printed text."""
+    """The notebook as a module after all cells have run, and the printed text."""
     module, printed = ModuleType("lecture"), io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed):
         patch.setitem(sys.modules, "lecture", module)
@@ -106,16 +106,17 @@ def test_every_cell_runs_and_its_claims_about_engines_are_right(lecture):
     module, printed = lecture
     assert "rows and coordinates: (8, 9)  freedoms of place and of velocity: (1, 1)" in printed
     assert max(module.apart, module.slip, module.gap, module.drift) < 1e-9
-    # The first order of the engine as shipped; tuned, MuJoCo's follows the square of the step.
+    # The shipped pymunk is of first order, the tuned MuJoCo of second order.
     assert module.slopes["pymunk default"] == pytest.approx(1.0, abs=0.35)
     assert module.slopes["mujoco tuned"] == pytest.approx(2.0, abs=0.35)
-    # A plateau: with thirty times as many steps the error is hardly smaller. With the shipped integrator two errors
-    # cancel at one step; documented settings reduce the error more than a step a tenth as large.
+    # With RK4 the error has a plateau over thirty times as many steps. With the default integrator two errors cancel at
+    # one step. Tuned settings reduce the error more than a tenfold smaller step.
     plateau = module.swept["mujoco RK4"]
     assert plateau.min() > plateau.max() / 2
     assert module.swept["mujoco default"][-1] < plateau[-1]
     assert module.swept["mujoco tuned"][0] < plateau[2]
-    # The errors cancel at 1 ms; at smaller steps the error is ten times larger, the plateau of the soft joint.
+    # Two errors cancel at a step of 1 ms. At smaller steps the error is ten times larger, which is the plateau of the
+    # soft joint.
     errors = dict(zip(module.fine, module.lucky["default"], strict=True))
     assert errors[100] * 10 < errors[1000] < module.lucky["RK4"][-1] < 1.2 * errors[1000]
     assert module.astray > 1
@@ -127,18 +128,18 @@ def test_every_cell_runs_and_its_claims_about_engines_are_right(lecture):
 
 def test_the_exercises_on_rolling_and_skates_have_the_known_answers(lecture):
     module, printed = lecture
-    # a / b + 1 turns outside and a / b - 1 inside, there against the centre's direction; from 2,000 points of a round.
+    # The disc makes a / b + 1 turns outside, and a / b - 1 turns backwards inside; 2,000 points are sampled.
     assert module.turns == pytest.approx({"disc": 3.0, "hole": -1.0}, abs=1e-3)
-    # omega^2 / (1/b + kA): kA = 1/a on the disc, 0 on flat ground, -1/a in the hole.
+    # The value is omega^2 / (1/b + kA) with kA = 1/a on the disc, 0 on flat ground and -1/a in the hole.
     assert module.starts == pytest.approx({"disc": 1 / 6, "flat": 1 / 4, "hole": 1 / 2}, rel=1e-12)
     assert "8: (Move(turn=1.57" in printed
-    # Differences of second order over a millisecond: an error of 1e-6 times rates near 1.
+    # Differences of second order over a millisecond have an error of 1e-6 times rates near 1.
     assert module.factor == pytest.approx(1.0, abs=1e-4)
-    # The sech of the solution has decayed; the initial rate of 1e-3 rad/s is its first part.
+    # The turning rate, a sech, begins at 1e-3 rad/s and has decayed at the end.
     assert module.turned == pytest.approx(math.pi * module.gyration / 0.5, rel=1e-3)
 
 
-# numpy alone takes as long to import as all that the help needs, and the others ten times as long.
+# Importing numpy takes as long as all imports of the help, and the remaining modules take ten times as long.
 SLOW_TO_IMPORT = ("numpy", "scipy", "matplotlib", "pymunk", "mujoco", "numba", "reference.joints", "engines")
 
 

@@ -1,4 +1,4 @@
-"""Engines with one mistake each, for `engines.conformance` and the gates, which must find the mistake."""
+"""Engines with one mistake, which `engines.conformance` and the gates must find."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ from tests.wrong.mistakes import Mistake
 
 @dataclass(frozen=True)
 class Wrong(EngineWrapper):
-    """A correct engine with the mistake of its variant, in the run that it builds or in a declaration."""
+    """A correct engine with the mistake that `variant` names, in a run or in a declaration."""
 
     variant: str
     engine: Engine = LEAPFROG
@@ -58,7 +58,7 @@ class Wrong(EngineWrapper):
 
 
 def answer_of(member: str) -> Callable[..., Any]:
-    """The method of the right engine, or the wrong one of the variant."""
+    """The member of the correct engine, or the wrong function that the variant names."""
 
     def answer(self: Wrong, *arguments: Any) -> Any:
         _, wrong, function = ANSWERS.get(self.variant, ("", "", None))
@@ -72,7 +72,7 @@ for member in ("order", "step_cost", "enforcement", "regularisation", "inner_ste
 
 
 HALF_STEP_LATE = "velocities are half a step late"
-# By the name of the mistake: the first check that finds it, and the function that builds the wrong run.
+# Name of the mistake to the first check that finds the mistake and the function that builds the wrong run.
 MISTAKES: dict[str, tuple[str, Build]] = {
     "a kind of joint is looked up": (
         "builds_or_refuses",
@@ -139,7 +139,7 @@ MISTAKES: dict[str, tuple[str, Build]] = {
 
 
 def numbers_off(kind: str, relative: float) -> Build:
-    """Add a wrong number to every model, in the middle body or in gravity."""
+    """Make one number of every model wrong, in the middle body or in gravity."""
 
     def change(mechanism: Mechanism) -> Mechanism:
         owner = "" if kind == "gravity" else mechanism.bodies[len(mechanism.bodies) // 2].name
@@ -158,11 +158,11 @@ def driven_backwards(mechanism: Mechanism) -> Mechanism:
 
 
 def longer_steps(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """Make steps that are 1 % too long, with the times of the correct steps."""
+    """Make steps that are 1 % too long, and return the times of correct steps."""
     return Spoiled(inner.build(mechanism, 1.01 * dt), lambda run: replace(run, t=run.t / 1.01))
 
 
-# Mistakes for the gate of theory; some are too small for the conformance checks.
+# Mistakes for the gate of theory, of which some are too small for the conformance checks.
 SMALL_MISTAKES: dict[str, tuple[str, Build]] = {
     "a mass is 1 % off": ("", numbers_off("mass", 1e-2)),
     "a mass is 0.1 % off": ("", numbers_off("mass", 1e-3)),
@@ -179,7 +179,7 @@ SMALL_MISTAKES: dict[str, tuple[str, Build]] = {
     "reactions are 1.1 times as large": ("", times("reaction", 1.1)),
     "reactions are no numbers": ("", times("reaction", np.nan)),
 }
-# By the name of the mistake: the check that finds it, the member of the engine, and the wrong function.
+# Name of the mistake to the check that finds the mistake, the engine's member and the wrong function.
 ANSWERS: dict[str, tuple[str, str, Callable[..., Any]]] = {
     "the order is a number": ("promises_an_order", "order", lambda mechanism: 2),
     "an order is refused in a word": ("promises_an_order", "order", lambda mechanism: NotDeclared("no")),
@@ -233,7 +233,7 @@ class Listing(Wrong):
 
 
 def local() -> Any:
-    """An engine of a local class, which can't be pickled."""
+    """An engine whose class is local, so that it can't be pickled."""
 
     @dataclass(frozen=True)
     class Local(Wrong):
@@ -261,7 +261,7 @@ class Imported(Wrong):
     packages: tuple[str, ...] = ("_pymunk_cffi_backend",)  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
-# By the name of the mistake: the check that finds it, and the wrong engine.
+# Name of the mistake to the check that finds the mistake and the wrong engine.
 WRONG: dict[str, tuple[str, Any]] = {
     **{name: (check, Wrong(name)) for name, (check, *_) in {**MISTAKES, **ANSWERS}.items()},
     "the family has two lines": ("has_a_name", TwoLines("nothing")),

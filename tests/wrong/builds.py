@@ -1,4 +1,4 @@
-"""Mistakes of adapters: each function builds a wrong run with a correct engine."""
+"""Functions that build a wrong run with a correct engine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Build = Callable[[Engine, Mechanism, float], Any]
 
 
 class Spoiled:
-    """A run whose trajectory is changed before it is returned; `size` is that of the correct run."""
+    """A run of the same `size` as a correct run, whose trajectory is changed."""
 
     def __init__(self, run: Run, spoil: Callable[[Trajectory], Trajectory]) -> None:
         self._run, self._spoil = run, spoil
@@ -30,7 +30,7 @@ class Spoiled:
 
 
 class Careless:
-    """A run that calls a function of (samples, every) and does not check these counts."""
+    """A run that calls a function of (samples, every) without checks of these counts."""
 
     def __init__(self, size: Any, call: Callable[[int, int], Any]) -> None:
         self.size, self._call = size, call
@@ -62,7 +62,7 @@ def before(change: Callable[[Mechanism], Mechanism]) -> Build:
 
 
 def moved(trajectory: Trajectory, name: str, by: Any) -> Trajectory:
-    """The trajectory with `by` added to one array, from the second sample on."""
+    """The trajectory with `by` added to one array after the first sample."""
     values = getattr(trajectory, name).copy()
     values[1:] += np.broadcast_to(by, values.shape)[1:]
     return replace(trajectory, **{name: values})
@@ -73,7 +73,7 @@ def times(name: str, factor: float) -> Build:
 
 
 def refusing(raise_if: Callable[[Mechanism], Any]) -> Build:
-    """Fail for mechanisms for which `raise_if` raises."""
+    """Build a run unless `raise_if` raises an error for the mechanism."""
 
     def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
         raise_if(mechanism)
@@ -102,7 +102,7 @@ def any_count(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def goes_on(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
-    """Continue after the first call when the run is called again."""
+    """Let a second call of a run continue the motion of the first call."""
     done = 0
 
     def call(samples: int, every: int) -> Trajectory:
@@ -133,9 +133,9 @@ def wall_clock(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
 
 
 def from_neighbours(combine: Callable[[Any, Any, Any], Any], first: bool, *names: str) -> Build:
-    """Combine arrays from the states at a sample, one step later and one step earlier.
+    """Combine the arrays at a sample, one step later and one step earlier.
 
-    first: the first sample is wrong too.
+    If `first`, the first sample is wrong too.
     """
 
     def build(inner: Engine, mechanism: Mechanism, dt: float) -> Any:
@@ -194,7 +194,7 @@ def wrapped(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajecto
 
 
 def walled(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """Put walls around the origin, at the sides of a box of six metres."""
+    """Move bodies that start at |x| > 3 m, as walls around the origin would."""
     beyond = np.where(np.abs(mechanism.pose[:, 0]) > 3.0, trajectory.t[:, None] ** 2, 0.0)
     return moved(trajectory, "pose", beyond[..., None])
 
@@ -205,7 +205,7 @@ def right_handed(mechanism: Mechanism) -> Mechanism:
 
 
 def from_the_ground_up(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """Return the bodies with a joint to the ground first."""
+    """Reorder the bodies so that bodies with a joint to the ground come first."""
     grounded = {name for j in mechanism.joints if None in (j.first, j.second) for name in (j.first, j.second)}
     order = sorted(range(len(mechanism.bodies)), key=lambda i: mechanism.bodies[i].name not in grounded)
     return replace(trajectory, pose=trajectory.pose[:, order], twist=trajectory.twist[:, order])
@@ -217,6 +217,6 @@ def pins_first(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Traje
 
 
 def always_on_the_body(trajectory: Trajectory, mechanism: Mechanism, dt: float) -> Trajectory:
-    """Return reactions of joints with the ground as forces on the body, for each order of the two bodies."""
+    """Return reactions of joints with the ground as forces on the body, also if the ground is second."""
     signs = [-1.0 if joint.second is None else 1.0 for joint in mechanism.joints for _ in range(joint.size)]
     return replace(trajectory, reaction=trajectory.reaction * signs)

@@ -1,7 +1,8 @@
-"""Wrong models: an engine gets a mechanism with one wrong number, and its results are compared with the right scene.
+"""Wrong models: an engine simulates a mechanism with one wrong number, and the results are compared with the right
+scene.
 
-A mistake in an adapter has this effect. The second half tests whether the gates of the grid notice a wrong model: right
-and wrong models are run at the same steps, from coarse to fine.
+Mistakes in adapters have this effect. The second half tests whether the grid's gates notice a wrong model. Right and
+wrong models are run at the same steps, from coarse to fine.
 """
 
 from __future__ import annotations
@@ -33,13 +34,13 @@ from reports.search.planted import Misbuilt
 Some = TypeVar("Some")
 
 NUMBER_KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
-# Number of bodies or joints up to which all are changed; of more, only the first, the middle and the last one are.
+# Number of bodies or joints up to which all are changed. In longer lists only the first, middle and last are changed.
 MOST_TRIED = 6
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """One wrong number of a mechanism; `owner` is a body or joint ("" for gravity and the ground's points).
+    """One wrong number of a mechanism. The `owner` is a body or joint, or "" for gravity and the ground's points.
 
     Kinds, for a relative error r, with L the mechanism's length and T its time scale:
 
@@ -57,7 +58,7 @@ class Mistake:
         return " ".join(filter(None, (self.kind, self.owner, self.detail)))
 
     def made(self, right: Mechanism, relative: float) -> Misbuilt:
-        """The wrong model. Its start satisfies the joints; it is next to the right one in the metric of masses."""
+        """The wrong model. The start satisfies the joints with the smallest change in the norm of the masses."""
         bodies, joints, gravity = list(right.bodies), list(right.joints), right.gravity
         twist = right.twist.copy()
         length, time = right.length_scale, right.time_scale
@@ -72,7 +73,7 @@ class Mistake:
             case "length":
                 joints = [_lengthened(joint, self.owner or None, 1 + relative) for joint in joints]
             case "rate" if not self.owner:
-                # From rest every body gets a rotation rate, which is then projected to the joints.
+                # Bodies at rest get a rotation rate, which is projected to the joints.
                 twist = twist * (1 + relative) if twist.any() else np.add(twist, [0.0, 0.0, relative / time])
             case _:
                 index = [joint.name for joint in joints].index(self.owner)
@@ -81,7 +82,7 @@ class Mistake:
 
 
 def _lengthened(joint: Joint, body: str | None, factor: float) -> Joint:
-    """The joint with the distance of its point from the centre of mass of this body (None: ground) times `factor`."""
+    """The joint with the position of its point on this body (None: ground) times `factor`."""
     changes = {}
     for name, point in ((joint.first, "first_point"), (joint.second, "second_point")):
         if name == body and point in joint.__dataclass_fields__:
@@ -147,7 +148,7 @@ def _some(many: Sequence[Some]) -> Sequence[Some]:
 
 
 def mistakes(mechanism: Mechanism) -> tuple[Mistake, ...]:
-    """The mistakes in all numbers of a mechanism; for long chains only those of the ends and the middle."""
+    """The mistakes in all numbers of a mechanism, in long chains only of the ends and the middle."""
     return tuple(_mistakes(mechanism))
 
 
@@ -181,7 +182,7 @@ def _mistakes(mechanism: Mechanism) -> Iterator[Mistake]:
 
 @dataclass(frozen=True)
 class Misnumbered:
-    """The change of a mechanism by a mistake of a relative size."""
+    """A function that returns a mechanism with a mistake of a relative size."""
 
     mistake: Mistake
     relative: float
@@ -191,13 +192,13 @@ class Misnumbered:
 
 
 def mistaken(engine: Engine, mistake: Mistake, relative: float) -> Altered:
-    """An engine with one mistake in every model that it builds, and with the declarations of the right one."""
+    """An engine that builds models with one mistake and has the declarations of the right engine."""
     return Altered(engine, Misnumbered(mistake, relative))
 
 
 @dataclass(frozen=True)
 class MistakeTrial:
-    """Mistakes of one relative size in a scene and engine, in runs with an estimated cost of at most `limit` [s]."""
+    """Mistakes of one relative size in one scene and engine; runs have an estimated cost of at most `limit` [s]."""
 
     scene: Scene
     engine: Engine
@@ -214,10 +215,10 @@ class MistakeTrial:
 class Sighting:
     """How a mistake was noticed.
 
-    `check`: the check of theory that the wrong model fails and the right one passes, or "". `every`: the last number of
-    steps per sample that was tried. `changed`: whether the gate of change distinguishes the wrong row from the right
-    one at any of the steps. `shift`: the largest difference between an error and the right model's (in m, rad, and per
-    s; relative), at the step with the smallest `noise`, the right model's largest error.
+    `check`: the check of theory that only the wrong model fails, or "". `every`: the last number of steps per sample
+    that was tried. `changed`: whether the gate of change distinguishes wrong and right row at any step. `shift`: the
+    largest difference between errors of the wrong and the right model, in the errors' units. `noise`: the largest error
+    of the right model. The step with the smallest noise is used.
     """
 
     check: str = ""
@@ -227,7 +228,7 @@ class Sighting:
     noise: float = math.inf
 
     def after(self, every: int, right: Measurement, wrong: Measurement, amplified: float) -> Sighting:
-        """The result with one more step, at which no check has noticed the mistake."""
+        """The sighting after one more step at which no check has noticed the mistake."""
         baseline = Old(
             Outcome(right.outcome), {quantity.name: getattr(right, quantity.name) for quantity in QUANTITIES}
         )
@@ -237,7 +238,7 @@ class Sighting:
 
 
 def shift(right: Measurement, wrong: Measurement) -> float:
-    """The largest difference between two rows' errors; infinite for different outcomes or different known errors."""
+    """The largest difference between the errors of two rows, which is infinite if outcomes or known errors differ."""
     pairs = [(getattr(right, quantity.name), getattr(wrong, quantity.name)) for quantity in QUANTITIES]
     if right.outcome != wrong.outcome or any(math.isnan(a) != math.isnan(b) for a, b in pairs):
         return math.inf
@@ -245,17 +246,17 @@ def shift(right: Measurement, wrong: Measurement) -> float:
 
 
 def noticed(trials: Sequence[MistakeTrial]) -> tuple[Mapping[Mistake, Sighting], ...]:
-    """The sightings of each trial; the trials are in one scene, so that the judge runs the scene once."""
+    """The sightings of trials that are all in one scene, so that the scene's prediction is computed once."""
     scene = trials[0].scene
     judge = prediction(scene, kinds(scene, [trial.engine for trial in trials]))
     return tuple(sightings(trial, judge) for trial in trials)
 
 
 def sightings(trial: MistakeTrial, judge: Prediction) -> Mapping[Mistake, Sighting]:
-    """The sighting of every mistake; empty if the engine can't build the scene.
+    """The sighting of every mistake, or nothing if the engine can't build the scene.
 
-    Mistakes that are not noticed are run again at finer and finer steps. A wrong row is judged together with the
-    coarser wrong rows, since in the grid a wrong engine is wrong at every step.
+    Mistakes that are not noticed are run again at finer and finer steps. A wrong row is checked together with the wrong
+    rows of larger steps, as in a grid with a wrong engine.
     """
     scene, engine = trial.scene, trial.engine
     page = next(page for page in PAGES if scene.name in {member.name for member in page.scenes})

@@ -1,1 +1,1 @@
-"""Deliberate mistakes in mechanics (`physics.toml`), and the test that notices each of them."""
+"""Deliberate mistakes in mechanics (`physics.toml`), each with the test that notices the mistake."""

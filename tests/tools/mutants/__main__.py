@@ -1,5 +1,5 @@
-"""Make each deliberate mistake in a copy of the tree, and run the test that its entry names.
-The status is 0 if each mistake was noticed, or survives with a reason; else 1.
+"""Make each deliberate mistake in a copy of the tree, and run the test that the mistake's entry names.
+The exit status is 0 if every mistake is noticed or has a reason to survive, else 1.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ TEST_TIMEOUT = 300.0  # s, for one run of pytest.
 
 
 def copy_tree(folder: Path) -> Path:
-    """A copy of the tree with bytecode that Python checks by contents: a mistake may keep a file's date and size."""
+    """A copy of the tree. Python checks its bytecode by contents, since a mistake may keep a file's date and size."""
     shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*EXCLUDED_FROM_COPY))
     compileall.compile_dir(folder, quiet=2, invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
     return folder
 
 
 def run_tests(tree: Path, tests: str) -> tuple[bool, str]:
-    """Whether a test failed, and the first failed test, or the reason for which none ran."""
+    """Whether a test failed, and the name of the first failed test, or the reason why no test ran."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     environment["NUMBA_CACHE_DIR"] = str(tree.parent / "numba")
     command = [sys.executable, "-m", "pytest", *PYTEST_OPTIONS, *FAST_TESTS, tests]

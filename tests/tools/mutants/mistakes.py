@@ -1,4 +1,4 @@
-"""Mistakes that people make in mechanics, written by hand in `physics.toml`.
+"""The list `physics.toml` of mistakes that people make in mechanics.
 
     [["Mechanism.bias"]]                      # the function's qualified name, "gate.change:NAME" if it is ambiguous
     mistake = "the bias term is left out"     # a sentence, unique in the list
@@ -6,8 +6,8 @@
     old = "-np.imag(rates) / step"            # an expression or statements, in any layout
     new = "0 * rates"                         # the replacement; "" removes a statement
 
-`[[""]]` is the code outside of functions. `old` has to occur once in all functions of that name. `survives` is the
-reason why no test can notice the mistake.
+`[[""]]` is the code outside of functions. `old` must occur exactly once in all functions of that name. `survives` is
+the reason why no test can notice the mistake.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Mutation:
     survives: str = ""
 
     def locate(self) -> tuple[str, bytes]:
-        """The file, relative to the root, and its code with the mistake; raises BadList."""
+        """The file, relative to the root, and its code with the mistake. Raises BadList."""
         module, _, function = self.function.rpartition(":")
         old = _parse(self.old)
         try:
@@ -64,7 +64,7 @@ class Mutation:
 
 
 def read_mistakes(path: Path = LIST) -> tuple[Mutation, ...]:
-    """All entries; raises BadList for a missing or unknown field and for a repeated sentence."""
+    """All entries of the list. Raises BadList for a missing or unknown field and for a repeated sentence."""
     entries: dict[str, Mutation] = {}
     for function, tables in tomllib.loads(path.read_text(encoding="utf-8")).items():
         for fields in tables:
@@ -80,7 +80,7 @@ def read_mistakes(path: Path = LIST) -> tuple[Mutation, ...]:
 
 @cache
 def _functions() -> dict[str, set[str]]:
-    """The qualified names of all functions and classes of every file; "" is the module."""
+    """File names to the qualified names of their functions and classes; "" is the module."""
     paths = sorted(path for package in MUTATED_PACKAGES for path in (ROOT / package).rglob("*.py"))
     trees = {path.relative_to(ROOT).as_posix(): ast.parse(path.read_bytes()) for path in paths}
     return {file: {"", *(name for name, _ in _walk(tree, ""))} for file, tree in trees.items()}
@@ -96,7 +96,7 @@ def _walk(node: ast.AST, within: str) -> Iterator[tuple[str, ast.AST]]:
 
 
 def _parse(code: str) -> list[Any]:
-    """The expression, or the statements."""
+    """The syntax tree of an expression or of statements."""
     try:
         return [ast.parse(code, mode="eval").body]
     except SyntaxError:
@@ -104,7 +104,7 @@ def _parse(code: str) -> list[Any]:
 
 
 def _replace(node: ast.AST, old: list[Any], new: list[Any], inside: bool) -> int:
-    """Replace `old` below a node and return the number of occurrences; `inside`: in nested functions as well."""
+    """Replace `old` below a node, and in nested functions if `inside`; return the number of occurrences."""
     kind = ast.expr if isinstance(old[0], ast.expr) else ast.stmt
     wanted, count = [ast.unparse(part) for part in old], 0
     for name, value in list(ast.iter_fields(node)):
