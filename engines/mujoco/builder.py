@@ -16,14 +16,14 @@ from reference.mechanism import Mechanism
 if TYPE_CHECKING:
     from engines.mujoco.engine import MuJoCo
 
-Callback = Callable[[Any, Any], None]  # of (mujoco.MjModel, mujoco.MjData)
+Callback = Callable[[Any, Any], None]  # a function of (mujoco.MjModel, mujoco.MjData)
 RowKind = Literal["skate", "slot", "rod", "roll"]
-PLACEHOLDER = "written row"  # the name, without a number, of a tendon that reserves a row of the solver
+PLACEHOLDER = "written row"  # tendons with this name and a number reserve rows of the solver
 
 
 @dataclass(frozen=True)
 class Hooks:
-    control: Callback | None = None  # called in every stage of the integrator, as `mjcb_control`
+    control: Callback | None = None  # MuJoCo's callback `mjcb_control`
     before_step: Callback | None = None
 
     def __add__(self, other: Hooks) -> Hooks:
@@ -33,19 +33,19 @@ class Hooks:
         return bool(self.control or self.before_step)
 
 
-# The arguments are the compiled model and the index of each tree coordinate in qpos and qvel.
+# A function of the compiled model and the indices of the tree coordinates in qpos and qvel.
 HookMaker = Callable[[Any, Sequence[int]], Hooks]
 
 
 @dataclass(frozen=True)
 class UserRowJoint:
-    """A joint that is enforced by rows that our code writes.
+    """A joint whose rows our code writes.
 
-    `numbers`: the arguments of the function for this kind of row in `user_rows`.
+    `numbers`: the arguments of the function in `user_rows` that writes this kind of row.
     """
 
     kind: RowKind
-    first: str | None  # name of a body, None for the ground
+    first: str | None  # name of a body, or None for the ground
     second: str | None
     numbers: tuple[float, ...]
     rolled: Rolled | None = None  # the position of the second body of a Roll as a function of its rotation
@@ -73,14 +73,14 @@ class ModelBuilder:
     tree: Tree
     dt: float
     settings: MuJoCo
-    row_count: int = 0  # the number of the mechanism's rows that MuJoCo's constraints enforce
+    row_count: int = 0  # number of the mechanism's rows that MuJoCo's constraints enforce
     needs_contacts: bool = False
     user_rows: list[UserRowJoint] = field(default_factory=list)
     hook_makers: list[HookMaker] = field(default_factory=list)
     driven: list[DrivenCoordinate] = field(default_factory=list)
     start_rates: dict[str, float] = field(default_factory=dict)  # Rates at t = 0 of joints that are no tree coordinate.
-    clocks: list[str] = field(default_factory=list)  # Joints that no force can accelerate, besides tree coordinates.
-    # The name of each auxiliary body, and the index of the mechanism's body from which it was split.
+    clocks: list[str] = field(default_factory=list)  # Joints outside the tree that no force can accelerate.
+    # Names of auxiliary bodies, each with the index of the body from which it was split.
     split_bodies: list[tuple[str, int]] = field(default_factory=list)
 
     @property
@@ -102,7 +102,7 @@ class ModelBuilder:
         return self.spec.body(self.spec_name(name))
 
     def add_site(self, name: str, body: str | None, point: tuple[float, float]) -> str:
-        """Add a site at a point [m] of a body frame of the mechanism; returns the name of the site."""
+        """Add a site at a point [m] in the frame of a body, and return its name."""
         self.spec_body(body).add_site(name=name, pos=[*world_offset(self.mechanism, body, point), 0.0])
         return name
 
@@ -113,14 +113,14 @@ class ModelBuilder:
         return tendon
 
     def add_fixed_tendon(self, name: str, factors: Mapping[int, float]) -> Any:
-        """Add a tendon whose length is a sum of tree coordinates. `factors`: the factor of each coordinate."""
+        """Add a tendon whose length is the sum of tree coordinates times `factors`."""
         tendon = self.spec.add_tendon(name=name)
         for column, factor in sorted(factors.items()):
             tendon.wrap_joint(f"coordinate {column}", factor)
         return tendon
 
     def add_equality(self, kind: Any, first: str, second: str = "", rows: int = 1) -> Any:
-        """Add an equality with the stiffness of the settings. `kind`: its mjtEq, `rows`: its rows in the mechanism."""
+        """Add an equality of a `kind` (mjtEq), which enforces a number of the mechanism's `rows`."""
         is_tendon = kind == mujoco.mjtEq.mjEQ_TENDON
         self.row_count += rows
         return self.spec.add_equality(
@@ -136,7 +136,7 @@ class ModelBuilder:
         self.add_equality(mujoco.mjtEq.mjEQ_TENDON, tendon)
 
     def hold_sum(self, name: str, factors: Mapping[int, float]) -> None:
-        """Keep a sum of tree coordinates at its initial value, unless all of its factors are zero."""
+        """Keep a sum of tree coordinates at its initial value, unless all factors are zero."""
         nonzero = {column: factor for column, factor in factors.items() if factor}
         if nonzero:
             self.add_fixed_tendon(name, nonzero)
@@ -153,7 +153,8 @@ class ModelBuilder:
     def reserve_user_rows(self) -> None:
         """Reserve the last solver rows for `user_rows`; no equality may be added afterwards.
 
-        Equalities of tendons reserve the rows, since each tendon has its own scale of compliance (`tendon_invweight0`).
+        Equalities of tendons reserve the rows, since each tendon has a separate scale of compliance
+        (`tendon_invweight0`).
         """
         columns = [self.moving_columns(joint)[0] for joint in self.user_rows for _ in range(joint.size)]
         for number, column in enumerate(columns):
@@ -164,14 +165,14 @@ class ModelBuilder:
 
 
 def add_body(parent: Any, name: str, mass: float, inertia: float, position: Sequence[float] = (0.0, 0.0)) -> Any:
-    """Add a rigid body to a parent in a specification. `position` [m]: its centre of mass in the frame of the parent.
+    """Add a rigid body to a parent. `position` [m]: centre of mass in the frame of the parent.
 
-    Only the moment of inertia about z affects planar motion. Three equal moments satisfy MuJoCo's checks.
+    Only the moment of inertia about z affects planar motion. MuJoCo's checks accept three equal moments.
     """
     return parent.add_body(
         name=name,
         pos=[*position, 0.0],
-        ipos=[0.0, 0.0, 0.0],  # without this, MuJoCo adds `pos` to the centre of mass a second time
+        ipos=[0.0, 0.0, 0.0],  # otherwise MuJoCo adds `pos` to the centre of mass twice
         mass=mass,
         inertia=[inertia] * 3,
         explicitinertial=True,

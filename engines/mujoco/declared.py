@@ -1,10 +1,10 @@
-"""A comparison at an instant: the accelerations and reactions of MuJoCo, and those of the law that its model declares.
+"""Accelerations and reactions at an instant, by MuJoCo and by the law that the model declares.
 
-The law uses the constraint rows J of the mechanism and their rates of change. It takes the stiffness (`efc_KBIP`) and
-the compliance (`efc_R`) of each row from MuJoCo, and the armature of driven coordinates. In the coordinates of the
-tree, each row of MuJoCo must be a linear combination of the mechanism's rows of a joint.
+The law uses the constraint rows J of the mechanism and their rates of change. MuJoCo provides the stiffness
+(`efc_KBIP`) and the compliance (`efc_R`) of each row, and the armature of driven coordinates. In tree coordinates, each
+row of MuJoCo must be a linear combination of a joint's rows in the mechanism.
 
-MJX runs the same compiled model, but without the velocity terms of loops and rods. Its law has no such terms either.
+MJX runs the same compiled model without the velocity terms of loops and rods, so its law has no such terms.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SAME_ROW = 1e-9  # Tolerance relative to the norm of a row: the rounding of sums along a chain of ten bodies.
-ROUNDING_TOLERANCE = 1e-28  # Tolerance of the solver with which its error is rounding: about the square of rounding.
-NO_VELOCITY_TERMS = "without velocity terms"  # The name of the law of MJX for loops and rods.
+SAME_ROW = 1e-9  # Tolerance relative to the norm of a row, for the rounding along a chain of ten bodies.
+ROUNDING_TOLERANCE = 1e-28  # A tolerance near the square of rounding, so that the solver's error is rounding.
+NO_VELOCITY_TERMS = "without velocity terms"  # Name of MJX's law for loops and rods.
 
 
 def instants(
@@ -49,8 +49,8 @@ def instants(
 ) -> tuple[Instant, ...] | NotDeclared:
     """Accelerations and reactions at t = 0 and, if `steps` is not 0, after `steps` steps; see `Engine.instants`.
 
-    `accelerations(model, data)`: the accelerations that are checked in place of those of MuJoCo; reactions are then not
-    checked. `check`: the law, "acceleration" or NO_VELOCITY_TERMS.
+    `accelerations(model, data)` returns accelerations to be checked instead of MuJoCo's; reactions are then not
+    checked. `check` names the law, "acceleration" or NO_VELOCITY_TERMS.
     """
     if reason := why_no_law(engine, mechanism, dt):
         return NotDeclared(reason)
@@ -82,11 +82,11 @@ def instants(
 
 
 class DependentRows(RuntimeError):
-    """The rows of a joint are dependent in the coordinates of the tree, so their forces are not determined."""
+    """The rows of a joint are dependent in tree coordinates, so the forces are not determined."""
 
 
 def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
-    """The reason why some construction of the mechanism has no law of an instant; "" if all have one."""
+    """The reason why a construction of a joint has no law at an instant; "" if there is no such construction."""
     if engine.drive != "inertia" and any(all(joint.is_angular) for joint in mechanism.joints):
         return f"a drive by {engine.drive!r} obeys no law of an instant"
     if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
@@ -105,9 +105,9 @@ class DeclaredState:
     pose: Array  # (bodies, 3).
     twist: Array  # (bodies, 3).
     free: Array  # Accelerations without joints (bodies, 3).
-    aimed: Array  # J a without its velocity term (rows,).
-    compliance: Array  # A matrix C (rows, rows), where C C^T is the compliance of the rows.
-    by_solver: Array  # A mask (rows,) of the rows that MuJoCo's solver enforces, and not the tree.
+    aimed: Array  # J a (rows,) without the velocity term.
+    compliance: Array  # A matrix C (rows, rows); the compliance of the rows is C C^T.
+    by_solver: Array  # Whether MuJoCo's solver enforces a row (rows,); otherwise the tree does.
 
     @classmethod
     def of(
@@ -115,22 +115,22 @@ class DeclaredState:
     ) -> DeclaredState:
         """The state of `data` after mj_forward.
 
-        Raises DependentRows, and RuntimeError if MuJoCo's rows are not those of the mechanism.
+        Raises DependentRows, and RuntimeError if MuJoCo's rows do not correspond to the mechanism's rows.
         """
         pose, twist, _ = _motion(model, data, data.qacc)
         rows = _declared_rows(mechanism, model, data, regularisation, pose, twist)
         return cls(mechanism, model, data, pose, twist, mechanism.unconstrained(pose, twist), *rows)
 
     def motion(self, accelerations: Array) -> Array:
-        """The accelerations of the bodies (bodies, 3) from those of the coordinates (nv,)."""
+        """The accelerations of the bodies (bodies, 3) from accelerations of the coordinates (nv,)."""
         return _motion(self.model, self.data, accelerations)[2]
 
     def law(self, velocity_term: bool = True) -> Constrained:
-        """The accelerations (bodies, 3) and forces (rows,) of the law.
+        """The accelerations (bodies, 3) and forces (rows,) by the law.
 
-        If `velocity_term` is False, the rows of the solver have no velocity term. In the coordinates of the tree such a
-        row is J D, where D are the directions of the coordinates. The missing term contains the rate of change of J D.
-        J a is then the value for zero accelerations of the coordinates.
+        If `velocity_term` is False, rows of the solver have no velocity term. In tree coordinates with the directions
+        D, such a row is J D, and its missing term contains d(J D)/dt. J a then has the value for zero accelerations of
+        the coordinates.
         """
         rows, right = self.mechanism.rows(self.pose), self.mechanism.bias(self.pose, self.twist)
         if not velocity_term:
@@ -146,7 +146,7 @@ class DeclaredState:
 
 
 def jacobian(compiled: Any, data: Any) -> Array:
-    """MuJoCo's constraint rows (rows, nv), from its dense or sparse storage."""
+    """MuJoCo's constraint rows (rows, nv) from dense or sparse storage."""
     if not mujoco.mj_isSparse(compiled):
         return data.efc_J[: data.nefc * compiled.nv].reshape(data.nefc, compiled.nv)
     dense = np.zeros((data.nefc, compiled.nv))
@@ -164,13 +164,13 @@ def _declared_rows(
 ) -> tuple[Array, Array, Array]:
     """The fields `aimed`, `compliance` and `by_solver` of a DeclaredState.
 
-    Raises DependentRows, and RuntimeError if MuJoCo's rows are not those of the mechanism.
+    Raises DependentRows, and RuntimeError if MuJoCo's rows do not correspond to the mechanism's rows.
     """
     rows, compiled = mechanism.rows(pose), model.compiled
     compliance, aimed, by_solver = np.zeros((len(rows), len(rows))), np.zeros(len(rows)), np.zeros(len(rows), bool)
     in_tree = rows @ _directions(model, data)
     gap, slip = np.nan_to_num(mechanism.gap(pose, data.time)), mechanism.slip(pose, twist)
-    # The tree enforces a row if its coordinates cannot change it, except by the rounding of arms.
+    # The tree enforces a row if tree coordinates cannot change the row's gap, except by the rounding of arms.
     rounding = 10 * np.finfo(float).eps * float(np.abs(pose[:, :2]).max())
     length = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     is_loose = np.abs(in_tree).max(axis=1, initial=0.0) > SAME_ROW * length + rounding
@@ -184,7 +184,7 @@ def _declared_rows(
             continue
         columns = np.flatnonzero(in_tree[part.start])
         if isinstance(joint, Drive) and len(columns) == 1 and compiled.dof_armature[columns[0]] > 0:
-            # The armature adds inertia to this rotation only. The compliance of the row is the inverse of this inertia.
+            # The armature is an inertia of this rotation alone, and its inverse is the compliance of the row.
             compliance[part, part] = 1 / np.sqrt(compiled.dof_armature[columns[0]] * model.unit)
             continue
         numbers = _rows_in_span(solver_rows, unused, in_tree[part], model.address)[: joint.size]
@@ -198,7 +198,7 @@ def _declared_rows(
         joint_rows = _JointRows(model, data, joint, numbers, solver_rows[numbers], in_tree[part])
         compliance[part, part] = joint_rows.compliance
         if regularisation is not None and _is_user_row(compiled, data.efc_id[numbers[0]]):
-            # The damping of a skate differs from that of other user rows.
+            # The row of a skate has another damping than other user rows.
             damping = slip_damping(mechanism) if isinstance(joint, Skate) else regularisation.damping
             aimed[part] = -regularisation.stiffness * gap[part] - damping * slip[part]
         else:
@@ -215,32 +215,32 @@ class _JointRows:
     joint: Joint
     numbers: list[int]  # Indices of MuJoCo's rows.
     rows: Array  # MuJoCo's rows (size, nv).
-    in_tree: Array  # The mechanism's rows of the joint (size, nv).
+    in_tree: Array  # The joint's rows in the mechanism (size, nv).
 
     @property
     def beside(self) -> list[int]:
-        """The coordinates outside the tree: clocks, against which a sum of coordinates is driven."""
+        """The coordinates outside the tree, which are the clocks of drives."""
         return [column for column in range(self.model.compiled.nv) if column not in self.model.address]
 
     @property
     def factors(self) -> Array:
-        """The matrix (size, size) that multiplies the mechanism's rows of the joint to give MuJoCo's rows."""
+        """The matrix (size, size) whose product with the joint's rows in the mechanism is MuJoCo's rows."""
         seen = self.model.address
         factors = np.linalg.lstsq(self.in_tree[:, seen].T, self.rows[:, seen].T, rcond=None)[0].T
         return np.asarray(factors, dtype=np.float64)
 
     @property
     def compliance(self) -> Array:
-        """A matrix C (size, size), where C C^T is the compliance. A clock adds the inverse of its inertia."""
+        """A matrix C (size, size) with the compliance C C^T, to which a clock adds its inverse inertia."""
         clock = np.sum(self.rows[:, self.beside] ** 2 / self.model.compiled.dof_M0[self.beside], axis=1)
         roots = np.sqrt((self.data.efc_R[self.numbers] + clock) / self.model.unit)
         return np.asarray(np.linalg.solve(self.factors, np.diag(roots)), dtype=np.float64)
 
     def aimed(self, gap: Array, slip: Array) -> Array:
-        """J a (size,) without its velocity term, from the stiffness and damping of MuJoCo's rows.
+        """J a (size,) without the velocity term, from the stiffness and damping of MuJoCo's rows.
 
-        A clock starts at the angle zero. Its angle then differs slightly from the prescribed one, since forces
-        accelerate its finite inertia.
+        A clock starts at the angle zero. Later its angle differs slightly from the prescribed angle, since its inertia
+        is finite.
         """
         data, beside, factors = self.data, self.beside, self.factors
         rate = self.joint.turning_rate if isinstance(self.joint, Drive) else 0.0
@@ -257,7 +257,7 @@ def _is_user_row(compiled: Any, equality: int) -> bool:
 
 
 def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, columns: list[int]) -> list[int]:
-    """The indices among `candidates` of solver rows that are linear combinations of `rows` in these columns."""
+    """The `candidates` whose solver rows are linear combinations of `rows` in these columns."""
     tested, span = solver_rows[candidates][:, columns], rows[:, columns].T
     residual = tested.T - span @ np.linalg.lstsq(span, tested.T, rcond=None)[0]
     is_inside = np.linalg.norm(residual, axis=0) <= SAME_ROW * np.linalg.norm(tested, axis=1)
@@ -265,7 +265,7 @@ def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, column
 
 
 def _directions(model: MuJoCoModel, data: Any) -> Array:
-    """The twists (3 bodies, nv) for unit velocities of the coordinates, in the pose of `data`."""
+    """The twists (3 bodies, nv) due to unit velocities of the coordinates, at the pose of `data`."""
     count = model.tree.coordinates
     position = np.broadcast_to(data.qpos[model.address], (count, count))
     _, twists, _ = model.tree.motion(position, np.eye(count), np.zeros((count, count)))
@@ -275,7 +275,7 @@ def _directions(model: MuJoCoModel, data: Any) -> Array:
 
 
 def _motion(model: MuJoCoModel, data: Any, accelerations: Array) -> tuple[Array, Array, Array]:
-    """The poses, twists and accelerations (bodies, 3) in the state of `data` with the given accelerations (nv,)."""
+    """The poses, twists and accelerations (bodies, 3) in the state of `data` with `accelerations` (nv,)."""
     columns = (values[model.address][None] for values in (data.qpos, data.qvel, accelerations))
     (pose,), (twist,), (change,) = model.tree.motion(*columns)
     return pose, twist, change

@@ -1,4 +1,4 @@
-"""The engine MuJoCo: its settings, and its convergence orders, enforcement and regularisation."""
+"""The engine MuJoCo with its settings and declarations."""
 
 from __future__ import annotations
 
@@ -50,15 +50,12 @@ class MuJoCo(Engine, Valid):
     """Settings of MuJoCo; raises ValueError for invalid ones.
 
     `coordinates`: with "tree" a body moves relative to its parent in a kinematic tree, and only loops need constraints.
-    With "free" every body has three coordinates, and every pin is a constraint. `drive`: the construction of drives,
-    see `engines.mujoco.joints.links`. `armature`: the armature of a driven joint relative to the inertia of the
-    mechanism. The relative error of the rate is about 0.1 / armature. `solvers`: the solvers in the order in which they
-    are tried at t = 0. The first one that solves the equations there is used. `tolerance`: the tolerance of the solver,
-    relative to the inertia of the coordinates that are not driven. `slots`, `skates`, `rolls`, `rods`: the
-    constructions of these joints, see `engines.mujoco.joints`. Skates whose rows change once per step use the
-    integrator Euler, since four stages with the same row cost more without a gain. `estimates`: whether methods of
-    order 4 estimate their error, see `engines.mujoco.step_doubling`. A motion whose estimate exceeds `engines.CLAIM` is
-    unresolved.
+    With "free" every body has three coordinates, and every pin is a constraint. `drive`, `slots`, `skates`, `rolls`,
+    `rods`: constructions of these joints, see `engines.mujoco.joints`. `armature`: armature of a driven joint relative
+    to the inertia of the mechanism; the relative error of the rate is about 0.1 / armature. `solvers`: the first of
+    these solvers that solves the equations at t = 0 is used. `tolerance`: tolerance of the solver, relative to the
+    inertia of the coordinates without drives. `estimates`: whether methods of order 4 estimate their error, see
+    `engines.mujoco.step_doubling`. If an estimate exceeds `engines.CLAIM`, the motion is unresolved.
     """
 
     name = "mujoco"
@@ -98,22 +95,22 @@ class MuJoCo(Engine, Valid):
         is_driven = any(isinstance(joint, Drive) and not tree.holds(joint) for joint in mechanism.joints)
         is_tied = tree.closed and isinstance(self.stiffness, TiedToStep)
         order, gap = ORDER if self.integrator == "RK4" else 1, None if tree.closed or has_rolls else EXACT
-        # The slip is of second order for a row at the predicted pose, else of first order.
+        # For a row at the predicted pose, the slip has order 2; otherwise it has order 1.
         slip = 2 if self.skates == "predicted tendon" else None
         overwritten = "a state that is overwritten between steps obeys no equation of which an order is known"
-        # The first entry whose condition holds applies.
+        # The first entry with a true condition applies.
         table: tuple[tuple[bool, ConvergenceOrder | NotDeclared], ...] = (
             (is_driven and self.drive == "overwrite", NotDeclared(overwritten)),
-            # The row of a contact contains the velocity without its rate of change.
+            # The row of a contact lacks the rate of change of its direction.
             (has_rolls and self.uses_contacts, ConvergenceOrder(1)),
             (has_skates and self.skates != "rows", ConvergenceOrder(1, gap=gap, slip=slip)),
-            # If the time constant of a loop's spring is some steps, the gap falls as the square of the step.
+            # If the time constant of a loop's spring is a multiple of the step, the gap has order 2.
             (is_tied and order > 1, ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, integrator=order)),
-            # The error of a pose in a prescribed motion is the gap.
+            # In a prescribed motion the errors of the poses are the gaps.
             (is_tied and is_prescribed(mechanism), ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1)),
             (is_tied, ConvergenceOrder(1, gap=2)),
             (tree.closed or has_rolls or has_skates, ConvergenceOrder(order, gap=gap)),
-            # Every integrator is exact for coordinates that turn at a constant rate.
+            # Every integrator is exact for constant rates.
             (turns_steadily(mechanism), ConvergenceOrder(EXACT)),
             (True, ConvergenceOrder(order, gap=EXACT, slip=EXACT)),
         )
@@ -125,9 +122,9 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """MuJoCo holds a joint by coordinates of the tree, connects, fixed tendons and contacts.
+        """Tree coordinates, connects, tendons and contacts are "engine".
 
-        Rows that callbacks write are "engine, our rows", and a state that is overwritten is "ours".
+        If a callback writes the rows, the result is "engine, our rows". If our code overwrites the state, it is "ours".
         """
         MUJOCO_CAPABILITY.require(mechanism)
         tree = self._tree(mechanism)
@@ -153,7 +150,7 @@ class MuJoCo(Engine, Valid):
         return spanning_tree(mechanism, hanging=self.coordinates == "tree")
 
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
-        """The step sizes of all runs, relative to the step. An error estimate needs a run with double steps."""
+        """The steps of all runs relative to dt; an error estimate needs a run with double steps."""
         return (2.0, 1.0) if self.estimates else (1.0,)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
@@ -162,19 +159,19 @@ class MuJoCo(Engine, Valid):
         soft = [joint for joint in mechanism.joints if tree.closes_by(joint) or isinstance(joint, Skate | Roll)]
         if not soft:
             return None
-        # Rows are incomplete if they have no velocity term, or if they hold only at the ends of steps.
+        # The law is incomplete if rows have no velocity term, or if rows hold only at the ends of steps.
         is_incomplete = _has(mechanism, Rod) and self.rods == "tendon"
         is_incomplete |= _has(mechanism, Skate) and self.skates == "blade"
         if _has(mechanism, Roll) and isinstance(self.rolls, RollContact):
             stiffness, is_incomplete = Shipped() if self.rolls.steps is None else TiedToStep(self.rolls.steps), True
         gain, damping = stiffness.gains(mechanism, dt)
         if self.skates == "rows" and all(isinstance(joint, Skate) for joint in soft):
-            damping = slip_damping(mechanism)  # rows of skates have this damping for all settings of stiffness
+            damping = slip_damping(mechanism)  # user rows of skates always have this damping
         softening = stiffness.softening
         if stiffness is self.stiffness and isinstance(stiffness, Hardened) and stiffness.eased:
             with suppress(Unsupported):  # with `eased`, the softening depends on the model
                 softening = self.model(mechanism, dt).softening
-        # This is the impedance for gaps of a millimetre or more. With MuJoCo's defaults, the compliance at zero gap is
+        # impedance[1] is valid for gaps of at least a millimetre. With MuJoCo's defaults, the compliance at zero gap is
         # about twice as large.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(joint in soft for joint in mechanism.joints for _ in range(joint.size))
@@ -195,8 +192,9 @@ class MuJoCo(Engine, Valid):
         data = model.start()
         _refuse_huge_rates(data)
         if self.estimates:
-            # Newton's method ends if its cost falls no further. From a start at zero, the accelerations of light bodies
-            # then have a relative error of 1e-5. The next solution starts from them and corrects this error.
+            # Newton's method ends when its cost no longer decreases. The first solution then has a relative error of
+            # 1e-5 in the accelerations of light bodies. The next solution starts from the first one and corrects this
+            # error.
             data.qacc_warmstart[:] = data.qacc
         size = Size(
             bodies=model.compiled.nbody - 1,
@@ -211,7 +209,7 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def model(self, mechanism: Mechanism, dt: Positive, unit: Positive | None = None) -> MuJoCoModel:
-        """The compiled model. `unit` [kg]: the unit of mass, by default `engines.mujoco.model.unit_of_mass`."""
+        """The compiled model with masses in `unit` [kg], by default `engines.mujoco.model.unit_of_mass`."""
         is_stepwise = self.skates in STEPWISE and _has(mechanism, Skate)
         integrator = "Euler" if is_stepwise else self.integrator
         options = {
@@ -228,7 +226,7 @@ class MuJoCo(Engine, Valid):
 
     @validated
     def text(self, mechanism: Mechanism, dt: Positive) -> str:
-        """A model in MJCF that does not need this suite, in kg, with the initial state as a keyframe.
+        """An MJCF file that does not need this suite, with masses in kg and the initial state as a keyframe.
 
         Raises Unsupported if our code writes rows or changes compliances.
         """
@@ -240,7 +238,7 @@ def _has(mechanism: Mechanism, kind: type[Joint]) -> bool:
 
 
 def _refuse_huge_rates(data: Any) -> None:
-    """Raise Unsupported for an initial state that MuJoCo would take for unstable and reset in the first step."""
+    """Raise Unsupported for rates or accelerations so large that MuJoCo would reset the state in the first step."""
     largest = max(float(np.abs(values).max(initial=0.0)) for values in (data.qvel, data.qacc))
     if largest > mujoco.mjMAXVAL:
         raise Unsupported(
@@ -251,7 +249,7 @@ def _refuse_huge_rates(data: Any) -> None:
 
 @validated
 def bare_loop(engine: MuJoCo, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
-    """CPU time [s] of `steps` calls of `mj_step` without recording, with which the cost of a run is compared."""
+    """CPU time [s] of `steps` calls of `mj_step` without recording."""
     model = engine.model(mechanism, dt)
     compiled, data, advance = model.compiled, model.start(), mujoco.mj_step
     begin = time.process_time()

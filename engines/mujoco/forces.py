@@ -1,8 +1,9 @@
 """Force elements in MuJoCo's model: tendons with stiffness or damping, and actuators with a constant force.
 
-Springs and dampers are spatial tendons between two sites. Torsional ones are fixed tendons, which are sums of tree
-coordinates. An actuator acts by its bias only, with any control. The actuator of a torque acts on a fixed tendon, and
-that of a force at a site. The reference site of a force is in the world, so its direction does not turn.
+Springs and dampers are spatial tendons between two sites. Torsion springs and torsion dampers are fixed tendons, whose
+length is a sum of tree coordinates. The force of an actuator is its bias, so controls have no effect. The actuator of a
+torque acts on a fixed tendon. The actuator of a force acts at a site; its reference site is in the world, so the force
+does not turn.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from engines.mujoco.builder import ModelBuilder
 from reference.forces import Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
-AUTOMATIC = -1.0  # the springlength that MuJoCo replaces by the initial length
+AUTOMATIC = -1.0  # MuJoCo replaces a springlength of -1 by the initial length
 
 
 def _name(force: ForceElement) -> str:
@@ -42,7 +43,7 @@ def _add_damper(builder: ModelBuilder, force: Damper) -> None:
 def _add_angle_tendon(
     builder: ModelBuilder, force: TorsionSpring | TorsionDamper | Torque, sign: float = 1.0
 ) -> Any | None:
-    """Add a fixed tendon whose length is `sign` times the relative angle; None if no coordinate changes this angle."""
+    """Add a fixed tendon whose length is `sign` times the relative angle; None if the angle is constant."""
     factors = builder.tree.turning(force.first, force.second)
     scaled = {column: sign * factor for column, factor in factors.items()}
     return builder.add_fixed_tendon(_name(force), scaled) if factors else None
@@ -53,7 +54,7 @@ def _add_torsion_spring(builder: ModelBuilder, force: TorsionSpring) -> None:
     second, first = (
         0.0 if name is None else mechanism.pose[mechanism.body_index(name), 2] for name in (force.second, force.first)
     )
-    rest = float(force.rest_angle - (second - first))  # tree coordinates are zero at the start
+    rest = float(force.rest_angle - (second - first))  # tree coordinates are zero at t = 0
     sign = -1.0 if rest == AUTOMATIC else 1.0
     tendon = _add_angle_tendon(builder, force, sign)
     if tendon is not None:
@@ -82,7 +83,7 @@ def _add_force(builder: ModelBuilder, force: Force) -> None:
 
 
 def _add_actuator(builder: ModelBuilder, force: ForceElement, kind: Any, gear: list[float], **fields: str) -> None:
-    """Add an actuator with the force 1, which is multiplied by `gear`."""
+    """Add an actuator whose constant force is `gear`."""
     builder.spec.add_actuator(
         name=_name(force),
         trntype=kind,

@@ -1,4 +1,4 @@
-"""The methods of MuJoCo: METHODS for all scenes, and methods that compare constructions of a joint.
+"""The methods of MuJoCo. METHODS are for all scenes, and the other methods compare constructions of a joint.
 
 The constructions of joints are in `engines.mujoco.joints`.
 """
@@ -17,7 +17,7 @@ TUNED = MuJoCo(
     "tuned",
     "RK4",
     TiedToStep(),
-    # With MuJoCo's default, 1e-8, accelerations may be wrong by about 1e-4 m/s^2, which is 100 % in a slow motion.
+    # With MuJoCo's default, 1e-8, accelerations may have an error of 1e-4 m/s^2, which is 100 % in a slow motion.
     tolerance=1e-15,
     jacobian="dense",
     islands=False,
@@ -48,8 +48,8 @@ METHODS = (
 )
 DRIVES = (replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),)
 
-# The blade of DEFAULT, with friction that acts as fast as the step allows and with the integrator Euler.
+# The blade of DEFAULT, with the integrator Euler and the largest damping that the step allows.
 SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),)
 ROLLS = (replace(TUNED, variant="contact, stiff Euler", integrator="Euler"),)
-# A slot with a moving line is a user row in this method. TUNED has none, since user rows are no setting of MuJoCo.
+# A slot with a moving line is a user row in this method. TUNED has no user rows, since they are no setting of MuJoCo.
 SLOTS = (replace(TUNED, variant="tuned, slots as rows", slots="rows"),)

@@ -30,8 +30,7 @@ if TYPE_CHECKING:
     from engines.mujoco.engine import MuJoCo
 
 Coordinates = Literal["tree", "free"]
-# The construction of each kind of joint that the tree does not enforce. Rows in MuJoCo's solver have the order of this
-# table.
+# Constructions of joints that the tree does not enforce. The rows in MuJoCo's solver have the order of this table.
 JOINT_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Sequence[Any]], None]] = {
     Pin: add_pins,
     Slot: add_slots,
@@ -43,7 +42,7 @@ JOINT_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Sequence[Any]], None]
     Roll: add_rolls,
 }
 MUJOCO_CAPABILITY = Capability("mujoco", frozenset(JOINT_CONSTRUCTIONS), frozenset(FORCE_CONSTRUCTIONS))
-# The largest unit of mass relative to the smallest mass or inertia, which is then far above mjMINVAL in this unit.
+# Largest unit of mass relative to the smallest mass or inertia. The smallest value in this unit is far above mjMINVAL.
 MAX_MASS_RATIO = 1e13
 
 
@@ -52,23 +51,23 @@ class MuJoCoModel:
     mechanism: Mechanism
     tree: Tree
     compiled: Any  # mujoco.MjModel.
-    address: list[int]  # The index of each tree coordinate in qpos and qvel.
+    address: list[int]  # Index in qpos and qvel by tree coordinate.
     driven: tuple[DrivenCoordinate, ...]
     drive: DriveBy
     hooks: Hooks = field(default_factory=Hooks)
-    rows: int = 0  # the number of scalar constraints that forces enforce, without drives
+    rows: int = 0  # number of scalar constraints that forces enforce, without drives
     has_user_rows: bool = False
     start_rates: Mapping[int, float] = field(
         default_factory=dict
-    )  # By index in qvel, for coordinates outside the tree.
-    unit: float = 1.0  # kg, the unit of mass of the compiled model, and so of its forces and torques.
+    )  # Rates of coordinates outside the tree, by index in qvel.
+    unit: float = 1.0  # Unit of mass [kg] of the compiled model, which also scales forces and torques.
     split_bodies: tuple[tuple[str, int], ...] = ()  # As in ModelBuilder.
     spec: Any = None  # mujoco.MjSpec.
-    softening: float = 1.0  # The factor on MuJoCo's compliances.
+    softening: float = 1.0  # Factor on MuJoCo's compliances.
 
     @contextmanager
     def callback_installed(self) -> Iterator[None]:
-        """Install the callback of the model, which every step and every evaluation needs.
+        """Install the model's callback, which every step and every evaluation needs.
 
         MuJoCo's callback is global. The previous callback is restored at the end, also after an exception.
         """
@@ -109,7 +108,7 @@ def build_model(
 ) -> MuJoCoModel:
     """Compile a mechanism for steps of dt [s]; raises Unsupported.
 
-    `options`: MuJoCo's options by name. `unit` [kg]: the unit of mass, by default `unit_of_mass`.
+    `options` are MuJoCo's options by name. `unit` [kg] is the unit of mass, by default `unit_of_mass`.
     """
     MUJOCO_CAPABILITY.require(mechanism)
     unit = unit or unit_of_mass(mechanism)
@@ -170,7 +169,7 @@ def _spec(tree: Tree, dt: float, islands: bool, options: Mapping[str, Any]) -> A
 
 
 def _compiled(builder: ModelBuilder) -> Any:
-    """The mujoco.MjModel. Raises Unsupported if MuJoCo refuses it, or would not read rows that a callback writes."""
+    """The mujoco.MjModel; raises Unsupported if MuJoCo refuses the model or would ignore rows from a callback."""
     option = builder.spec.option
     if builder.needs_contacts:
         option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
@@ -189,10 +188,10 @@ def _compiled(builder: ModelBuilder) -> Any:
 
 
 def _keep_small_offsets(compiled: Any) -> None:
-    """Make MuJoCo read the positions of sites and shapes within 1e-6 m of the origin of their body.
+    """Make MuJoCo use the positions of sites and shapes that are less than 1e-6 m from the origin of their body.
 
-    The compiler marks such a site as being at the origin, so MuJoCo never reads `site_pos`. A spring with an arm of
-    1e-7 m then has no torque (4.0.1, checked by a test in `tests/engines/test_mujoco_joints.py`).
+    The compiler marks such a site as being at the origin, and MuJoCo then ignores `site_pos`. A spring with an arm of
+    1e-7 m then has no torque (4.0.1, checked in `tests/engines/test_mujoco_joints.py`).
     """
     kinds = mujoco.mjtSameFrame
     tables = (compiled.site_pos, compiled.site_sameframe), (compiled.geom_pos, compiled.geom_sameframe)
@@ -217,11 +216,11 @@ def _add_bodies(spec: Any, tree: Tree) -> None:
 
 
 def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
-    """Make the tolerance of the solver relative to the inertia without the coordinates `steady`.
+    """Make the solver's tolerance relative to the inertia without the coordinates `steady`.
 
-    MuJoCo's tolerance is relative to the sum of the diagonal of M. Up to 3.12 this is the sum at t = 0, and in 4.0.1
-    the sum in the present state (`mj_solPrimal` in engine_solver.c, which does not read `stat.meaninertia`). With an
-    armature of 1e8 in the sum, the solver would stop at once although its accelerations are wrong by 100 %.
+    MuJoCo's tolerance is relative to the sum of the diagonal of the mass matrix. Up to version 3.12 MuJoCo evaluates
+    the sum at t = 0; version 4.0.1 evaluates it in the current state (`mj_solPrimal` in engine_solver.c). With an
+    armature of 1e8 in the sum, the solver would end at once although its accelerations have an error of 100 %.
     """
     free = np.delete(compiled.dof_M0, steady)
     if steady and len(free):
@@ -229,9 +228,9 @@ def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
 
 
 def unit_of_mass(mechanism: Mechanism) -> float:
-    """A power of two near the mass [kg] of the mechanism, or near its inertia [kg m^2] if that number is larger.
+    """A power of two near the mechanism's mass [kg], or near its inertia [kg m^2] if this number is larger.
 
-    MuJoCo accepts neither a mass nor a regularisation, which is an inverse mass or inertia, below mjMINVAL (1e-15).
+    MuJoCo accepts no mass and no regularisation (an inverse mass or inertia) below mjMINVAL, 1e-15.
     """
     mass = sum(body.mass for body in mechanism.bodies)
     smallest = min(min(body.mass, body.inertia) for body in mechanism.bodies)

@@ -1,4 +1,4 @@
-"""Releases of MuJoCo: their known faults, of which every motion warns, and differences between their interfaces."""
+"""Releases of MuJoCo: known faults, about which every run warns, and differences between interfaces."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 
 from reference.trajectory import RunWarning
 
-KNOWN_WRONG = "known to be wrong"  # Part of the warning.
-UPPER_CASE = ("RK4", "PGS", "CG")  # Words that are in upper case in MJCF.
+KNOWN_WRONG = "known to be wrong"  # These words are part of the warning.
+UPPER_CASE = ("RK4", "PGS", "CG")  # Constants in upper case in MJCF.
 MIXED_CASE = {"EULER": "Euler", "NEWTON": "Newton"}
-# The flag that solves all rows in one system. Before 3.3.6 MuJoCo had no such flag, and islands were off by default.
+# The flag that makes MuJoCo solve all rows in one system. Before 3.3.6 MuJoCo did so by default and had no flag.
 NO_ISLANDS = int(getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0))
 
 
 def known_fault(version: str) -> str:
-    """A sentence with the known fault of a release; "" for a release without one.
+    """A sentence about the known fault of a release; "" if no fault is known.
 
     The sources are the changelogs of 3.7.0 and 4.0.1, and github.com/google-deepmind/mujoco/issues/3767.
     """
@@ -33,7 +33,7 @@ def known_fault(version: str) -> str:
 
 
 def full_inertia(compiled: Any, data: Any) -> NDArray[np.float64]:
-    """The mass matrix (nv, nv) in the state of `data`. The signature of mj_fullM differs between releases."""
+    """The mass matrix (nv, nv) in the state of `data`; the signature of mj_fullM depends on the release."""
     dense = np.zeros((compiled.nv, compiled.nv))
     try:
         mujoco.mj_fullM(compiled, data, dense)
@@ -43,7 +43,7 @@ def full_inertia(compiled: Any, data: Any) -> NDArray[np.float64]:
 
 
 def spelled(constant: Any) -> str:
-    """The word of MJCF for a constant of MuJoCo, as 'implicitfast' for mjINT_IMPLICITFAST."""
+    """The word in MJCF for a constant of MuJoCo, such as 'implicitfast' for mjINT_IMPLICITFAST."""
     word = constant.name.split("_")[1]
     return MIXED_CASE.get(word, word if word in UPPER_CASE else word.lower())
 

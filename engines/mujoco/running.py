@@ -1,4 +1,4 @@
-"""Runs of a MuJoCo model: states are recorded in the timed loop, and reactions are computed after it."""
+"""Runs of a MuJoCo model. The timed loop records states, and reactions are computed after the loop."""
 
 from __future__ import annotations
 
@@ -26,18 +26,19 @@ from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]
 
-# A larger gap, relative to the length of the mechanism, is no integration error and causes a warning.
+# Largest gap without a warning, relative to the mechanism's length. A larger gap is no integration error.
 MAX_GAP = 1e-3
-# A solver with a larger residual, relative to the accelerations, has not converged.
+# Largest residual of a converged solver, relative to the accelerations.
 MAX_RESIDUAL = 1e-5
-# The number of instants, besides the samples, at which the error is estimated. With fewer double steps it is at all of
-# them.
+# Number of instants, in addition to the samples, at which the error is estimated. A motion with fewer double steps has
+# fewer instants.
 ESTIMATE_INSTANTS = 1000
-# Smaller accelerations, relative to the largest one so far, are rounding in a motion that has come to rest.
+# A motion is at rest if accelerations relative to the largest earlier acceleration are smaller than this. They are then
+# rounding.
 AT_REST = 1e-9
-# Smaller displacements, relative to the length of the mechanism, change the reactions too little for a warning.
+# Smallest displacement that can cause a warning about reactions, relative to the mechanism's length.
 MIN_DISPLACEMENT = FORCES * RANK_TOLERANCE
-# Factor on the displacement that closes the joints. Regularisation also changes motion that joints do not constrain.
+# Factor on the displacement that closes the joints, since regularisation also changes free motion.
 RELEASED_MOTION = 1.5
 
 
@@ -53,7 +54,7 @@ class WarningLog:
     reset_at: float | None = None  # s
 
     def record(self, message: str) -> None:
-        """Record a warning. MuJoCo calls this before it resets a state, so the time is that of the failed step."""
+        """Record a warning. MuJoCo calls this function before it resets a state, so `data.time` is that of the failed step."""
         text = " ".join(str(message).split(" Time = ")[0].split())
         self.messages.setdefault(text)
         if "value in Q" in text and self.reset_at is None and self.data is not None:
@@ -75,9 +76,9 @@ def logged_warnings(data: Any = None) -> Iterator[WarningLog]:
 @dataclass(eq=False)
 class MuJoCoRun(OneShot):
     model: MuJoCoModel
-    data: Any  # mujoco.MjData, which the steps change
+    data: Any  # mujoco.MjData, which every step changes
     size: Size
-    # Builds a run with another step [s], for the error estimate of RK4. None for no estimate.
+    # Builds a run with another step [s] for the error estimate; None if there is no estimate.
     with_step: Callable[[float], MuJoCoRun] | None = None
 
     @validated
@@ -85,14 +86,15 @@ class MuJoCoRun(OneShot):
         """Make samples * every steps. Raises ValueError for invalid counts, and RuntimeError at the second call.
 
         The error is also estimated at ESTIMATE_INSTANTS instants that do not depend on the samples. These instants
-        determine whether a third run is made. `stepping` is the CPU time of all runs.
+        determine whether a third run is necessary. `stepping` is the CPU time of all runs.
         """
         self.model.mechanism.require_room(samples)
         self.begin()
         sample_counts = np.arange(samples + 1) * every
         if self.with_step is None:
             return self._trajectory(sample_counts, sample_counts)
-        # Double steps end after every second step. Odd samples therefore need the even counts before and after them.
+        # Double steps end after every second step. A sample after an odd count therefore needs the two adjacent even
+        # counts.
         half = (samples * every + 1) // 2
         watched = 2 * np.unique(np.linspace(0, half, min(half, ESTIMATE_INSTANTS) + 1).round().astype(int))
         odd = sample_counts % 2
@@ -108,7 +110,7 @@ class MuJoCoRun(OneShot):
         t = counts.astype(float) * step
         with logged_warnings(self.data) as log, model.callback_installed():
             position, velocity, clock, stepping = self._step(counts)
-            # The clock is late after a reset. MuJoCo also warns of resets, but only once for each kind of warning.
+            # After a reset the clock is late. MuJoCo also warns about resets, but only once for each kind of warning.
             is_late = np.abs(clock - t) > step / 2
             reset_at = log.reset_at
             if reset_at is None and is_late.any():
@@ -133,11 +135,10 @@ class MuJoCoRun(OneShot):
         return Trajectory(t, pose, twist, reaction, stepping, tuple(warnings), reset_at)
 
     def _difference(self, pose: Array, counts: Counts, ratio: float) -> tuple[Array, float]:
-        """The difference from `pose` (times, bodies, 3) of a run with `ratio` times the step; NaN after a failure.
+        """The difference between a run with `ratio` times the step and `pose` (times, bodies, 3), and the CPU time [s].
 
-        `counts` (times,): the numbers of steps of that run before each pose. Its rows have ratio^4 times the
-        compliance, so the difference contains the error of the compliance too. Also returns the CPU time [s] of the
-        steps.
+        `counts` (times,) are the steps of the other run before each pose. The difference is NaN after a failure. Rows
+        of the other run have ratio^4 times the compliance, so the difference includes the error of the compliance.
         """
         assert self.with_step is not None  # only a run with an estimate calls this
         run = self.with_step(self._dt * ratio)
@@ -155,9 +156,9 @@ class MuJoCoRun(OneShot):
     def _with_estimate(self, run: Trajectory, counts: Counts, watched: Counts) -> Trajectory:
         """The run with its error estimate, and the time from which the estimate exceeds CLAIM.
 
-        `counts` (times,): the number of steps before each pose. `watched`: the indices in `counts` at which the order
-        is checked. If the difference to a run with double steps exceeds CLAIM, these two runs cannot confirm the order,
-        and a third run makes half steps. See `engines.mujoco.step_doubling`.
+        `counts` (times,) are the steps before each pose. `watched` are indices in `counts` at which the order is
+        checked. If the difference from a run with double steps exceeds CLAIM, two runs cannot confirm the order, and a
+        third run has half steps. See `engines.mujoco.step_doubling`.
         """
         is_even = counts % 2 == 0
         double, stepping = self._difference(run.pose[is_even], counts[is_even] // 2, 2.0)
@@ -167,7 +168,7 @@ class MuJoCoRun(OneShot):
             half, more = self._difference(run.pose, 2 * counts, 0.5)
             doubling, stepping = replace(doubling, half=half), stepping + more
         error, correction = doubling.estimate()
-        # Extrapolation does not remove gaps that are equal in all runs.
+        # If a gap is equal in all runs, extrapolation does not remove it.
         extrapolated = run.pose[watched] + correction[watched]
         released = RELEASED_MOTION * closing(self.model.mechanism, run.t[watched], extrapolated, run.t)
         error = error + np.maximum.accumulate(np.abs(released))
@@ -196,7 +197,7 @@ class MuJoCoRun(OneShot):
         return self.model.compiled.opt.timestep
 
     def _step(self, counts: Counts) -> tuple[Array, Array, Array, float]:
-        """MuJoCo's positions, velocities and clock after `counts` (times,) steps, and the CPU time of the loop [s].
+        """MuJoCo's positions, velocities and clock after `counts` (times,) steps, and the CPU time [s] of the loop.
 
         The first count must be 0.
         """
@@ -232,9 +233,9 @@ class MuJoCoRun(OneShot):
     def _accelerations(
         self, position: Array, velocity: Array, t: Array, evaluated: NDArray[np.bool_]
     ) -> tuple[Array, float]:
-        """The accelerations of MuJoCo's solver at the `evaluated` times, and the largest residual of the solver there.
+        """The accelerations by MuJoCo at the `evaluated` times, and the largest residual of the solver.
 
-        The residual is not evaluated for a motion that has come to rest, since its accelerations are rounding.
+        The residual is not evaluated for a motion at rest, since the accelerations are then rounding.
         """
         compiled, data = self.model.compiled, self.data
         acceleration, residual = np.full_like(velocity, np.nan), 0.0

@@ -15,9 +15,9 @@ from engines.mujoco.model import MuJoCoModel, multiply_compliances
 from engines.mujoco.releases import full_inertia
 
 # Largest relative residual of a solver that has solved the equations at t = 0. Measured residuals are at most 1e-7 for
-# solvers that suit a mechanism, and at least 1e-2 for others.
+# a suitable solver, and at least 1e-2 for an unsuitable solver.
 SOLVED_RESIDUAL = 1e-6
-# Largest fraction of an error that may remain after an iteration of Newton's method. With this limit, three iterations
+# Largest permitted fraction of the error that remains after an iteration of Newton's method. Three iterations then
 # reduce the error to rounding. In 850 scenes and random mechanisms the fraction is at most 0.08, with three exceptions.
 MAX_REMAINING_ERROR = 0.1
 
@@ -25,12 +25,12 @@ _factorise, _inverse_condition = get_lapack_funcs(("potrf", "pocon"), dtype=np.f
 
 
 def solver_residual(compiled: Any, data: Any) -> float:
-    """The residual of the solver's equations, relative to the accelerations in them.
+    """The residual of the solver's equations, relative to the accelerations.
 
-    The dual solver satisfies Newton's law M a = f + J^T F exactly. The primal solvers satisfy the constraint law
-    J a + R F = a_ref exactly. The error is the residual of the law that is not satisfied exactly. A contact row that
-    opens or slides has another law and is not included. If R is so small that forces are mostly rounding, the
-    accelerations are compared with an exact solution instead.
+    The dual solver satisfies Newton's law M a = f + J^T F exactly. The primal solvers satisfy the constraint law J a +
+    R F = a_ref exactly. The residual of the other law is the error. Contact rows that open or slide have another law
+    and are not included. If R is so small that forces are mostly rounding, the accelerations are compared with an exact
+    solution.
     """
     if not data.nefc:
         return 0.0
@@ -51,9 +51,9 @@ def solver_residual(compiled: Any, data: Any) -> float:
 
 
 def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
-    """The accelerations (nv,) by elimination, if the `holding` rows hold and the other rows are inactive.
+    """The accelerations (nv,) by elimination, for `holding` rows and otherwise inactive rows.
 
-    None if a row slides, or if the matrix is singular.
+    The result is None if a row slides or the matrix is singular.
     """
     is_inactive = data.efc_state == mujoco.mjtConstraintState.mjCNSTRSTATE_SATISFIED
     if not np.all(holding | is_inactive):
@@ -68,10 +68,10 @@ def _exact_accelerations(compiled: Any, data: Any, holding: Any) -> Any:
 
 
 def _remaining_error(compiled: Any, data: Any) -> float:
-    """The fraction of an error that remains, due to rounding, after an iteration of Newton's method.
+    """The fraction of the error that remains after an iteration of Newton's method because of rounding.
 
-    It is the condition number of the Hessian M + J^T R^-1 J times the rounding of a double. The Hessian is scaled to a
-    unit diagonal, since the rounding of its Cholesky factor does not depend on this scaling.
+    The fraction is the condition number of the Hessian M + J^T R^-1 J times the unit of rounding. The Hessian is scaled
+    to a unit diagonal, since the scaling does not change the rounding errors of its Cholesky factor.
     """
     if not data.nefc:
         return 0.0
@@ -89,9 +89,9 @@ def _remaining_error(compiled: Any, data: Any) -> float:
 def soften_until_solvable(model: MuJoCoModel, start: Any) -> float:
     """Multiply the compliances by 10 until the Hessian of the Newton solver is well conditioned.
 
-    Returns the new softening, at most 1, which is MuJoCo's default. The original compliances are too small if a light
-    body carries a heavy one. `start`: a mujoco.MjData at t = 0, solved by the solver of the model. Solvers other than
-    Newton have no Hessian, so the compliances stay unchanged.
+    Returns the new softening, which is at most 1 (MuJoCo's default). The original compliances are too small if a light
+    body carries a heavy body. `start` is a solved mujoco.MjData at t = 0. For another solver than Newton, the
+    compliances do not change.
     """
     compiled, softening = model.compiled, model.softening
     if compiled.opt.solver != mujoco.mjtSolver.mjSOL_NEWTON or not solver_residual(compiled, start) < SOLVED_RESIDUAL:
@@ -105,17 +105,17 @@ def soften_until_solvable(model: MuJoCoModel, start: Any) -> float:
 
 
 def choose_solver(model: MuJoCoModel, solvers: Sequence[str]) -> Any:
-    """Choose the first solver that solves the equations at t = 0, or the one with the smallest residual if none does.
+    """Choose the first solver that solves the equations at t = 0, or else the solver with the smallest residual.
 
-    Returns the mujoco.MjData at t = 0 that the chosen solver computes. Newton is the fastest solver. In long chains its
-    rounding exceeds the compliance, and the dual solver PGS is better. PGS fails for very different masses, and needs
-    hundreds of iterations for many loops. CG is slower, and is the fallback for both cases. Raises Unsupported if no
-    solver in the list can read user rows.
+    Returns the chosen solver's mujoco.MjData at t = 0. Newton is the fastest solver. In long chains Newton's rounding
+    exceeds the compliance, and the dual solver PGS is better. PGS fails for very different masses, and needs hundreds
+    of iterations for many loops. CG is slower, but suits these two cases. Raises Unsupported if no solver in the list
+    can read user rows.
     """
     residuals = {}
     for solver in solvers:
         if solver == "PGS" and model.has_user_rows:
-            continue  # its matrix is built before the rows are written
+            continue  # PGS builds its matrix before the callback writes the rows
         model.compiled.opt.solver = getattr(mujoco.mjtSolver, f"mjSOL_{solver.upper()}")
         start = model.start()
         residuals[solver] = solver_residual(model.compiled, start)

@@ -11,21 +11,21 @@ from numpy.typing import NDArray
 from engines import CLAIM
 
 Array = NDArray[np.float64]
-Counts = NDArray[np.int_]  # numbers of steps since t = 0 in ascending order, or indices in such an array
+Counts = NDArray[np.int_]  # numbers of steps since t = 0, ascending, or indices
 
 ORDER = 4
-# The largest difference of two runs that may be rounding, in rad or relative to the length of the mechanism.
+# Largest difference between runs that may be rounding, in rad or relative to the mechanism's length.
 ROUNDING_DIFFERENCE = 1e-8
-MAX_RATIO = 1 / 8  # the largest ratio of differences for successive step sizes that confirms at least third order
+MAX_RATIO = 1 / 8  # largest ratio of successive differences that confirms at least order 3
 
 
 @dataclass(frozen=True)
 class StepDoubling:
-    """Differences of the poses of runs with other steps from those with steps h; NaN after the failure of a run."""
+    """Differences between the poses of runs with other steps and with steps h; NaN after a run fails."""
 
-    counts: Counts  # The number (times,) of steps h before each pose; contains both neighbours of every odd number.
-    watched: Counts  # Indices of the even counts at which the order is checked.
-    unit: Array  # The unit of each component of a pose (3,).
+    counts: Counts  # The numbers (times,) of steps h before each pose, which contain both neighbours of an odd number.
+    watched: Counts  # Indices of even counts at which the order is checked.
+    unit: Array  # The units of a pose (3,).
     double: Array  # Differences (even counts, bodies, 3) of the run with steps 2h.
     half: Array | None = None  # Differences (times, bodies, 3) of the run with steps h / 2.
 
@@ -33,7 +33,7 @@ class StepDoubling:
     def difference(self) -> Array:
         """The differences (times, bodies, 3) of the run with steps 2h.
 
-        After an odd number of steps the difference is the larger one of its two neighbours, or NaN if one is NaN.
+        After an odd number of steps it is the larger of the two adjacent differences, or NaN if a difference is NaN.
         """
         even, odd = self.counts[self.counts % 2 == 0], self.counts % 2
         before, after = (self.double[np.searchsorted(even, count)] for count in (self.counts - odd, self.counts + odd))
@@ -41,7 +41,7 @@ class StepDoubling:
 
     @cached_property
     def conclusive(self) -> Counts:
-        """The `watched` indices before the first one at which the difference to steps 2h exceeds CLAIM."""
+        """The `watched` indices before the difference from the run with steps 2h first exceeds CLAIM."""
         is_small = self.relative(self.difference[self.watched]) <= CLAIM
         return self.watched[: np.argmin([*is_small, False])]
 
@@ -50,20 +50,20 @@ class StepDoubling:
         return len(self.conclusive) < len(self.watched)
 
     def relative(self, difference: Array) -> Array:
-        """The largest component (times,) of differences of poses, in rad or relative to the length of the mechanism."""
+        """The largest component (times,) of differences of poses, in rad or relative to the mechanism's length."""
         return np.max(np.abs(difference) / self.unit, axis=(1, 2))
 
     def estimate(self) -> tuple[Array, Array]:
-        """The errors of the poses, and corrections that extrapolate the poses to step zero (times, bodies, 3).
+        """The errors of the poses, and corrections that extrapolate the poses to zero step (times, bodies, 3).
 
         Rounding in stiff rows does not decrease with h, so differences below ROUNDING_DIFFERENCE are not divided by 15.
 
-        With a run of steps h / 2, let q be the ratio of the difference to that run and the difference to steps 2h. It
-        is 1/16 for RK4, and q <= 1/8 confirms at least third order. In this case, the differences for further halved
-        steps are assumed to fall by at least one half each, so their sum is at most 2 q times the difference to h / 2.
-        If q > 1/8, each difference is assumed to be at most 2/3 of the previous one, so all add up to three times the
-        first. (Near a change point, a factor of one half missed a fifth of the error.) Since an error may pass through
-        zero, q is the ratio of the largest differences so far.
+        With a run of steps h / 2, q is the ratio of its difference to the difference of the run with steps 2h. For RK4
+        q is 1/16, and q <= 1/8 confirms at least order 3. Differences for further halved steps are then assumed to
+        decrease by one half each, so their sum is at most 2 q times the difference of the run with h / 2. If q > 1/8,
+        differences are assumed to decrease by 2/3 each, so their sum is three times the first difference. (Near a
+        change point, one half in place of 2/3 missed a fifth of the error.) Since an error may cross zero, q is the
+        ratio of the largest differences so far.
         """
         size = np.abs(self.difference)
         if self.half is None:
@@ -73,15 +73,15 @@ class StepDoubling:
             np.maximum.accumulate(self.relative(each[self.watched])) for each in (self.difference, self.half)
         )
         q = fine / np.where(coarse > 0, coarse, np.inf)
-        factor = np.where(q <= MAX_RATIO, 1 + 2 * q, 3.0)  # also 3 where the run with steps 2h has failed
+        factor = np.where(q <= MAX_RATIO, 1 + 2 * q, 3.0)  # also 3 if the run with steps 2h has failed
         last_watched = np.searchsorted(self.counts[self.watched], self.counts, side="right") - 1
         return np.abs(self.half) * factor[last_watched, None, None], self.half * 2**ORDER / (2**ORDER - 1)
 
     def unresolved_from(self, error: Array) -> int | None:
         """The number of steps after which the motion is unresolved; None if no error (times, bodies, 3) exceeds CLAIM.
 
-        It is the count of the first such error, or the count after the last `conclusive` one if that is smaller. It is
-        0 if no count is conclusive.
+        It is the count of the first error above CLAIM, or the count after the last `conclusive` index if that is
+        smaller. Without a conclusive index it is 0.
         """
         above = np.flatnonzero(~(self.relative(error) <= CLAIM))
         if not len(above):

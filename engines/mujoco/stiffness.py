@@ -1,4 +1,4 @@
-"""Settings of the stiffness of MuJoCo's equality constraints, which are springs and dampers with a compliance.
+"""Stiffness of MuJoCo's equality constraints, which are springs and dampers with a compliance.
 
 A row obeys a + b v + k r = -R f, where r is its gap and f its force. The regularisation R is (1 - d) / d times an
 estimate of the inverse inertia of the row. The impedance d is at most 0.9999 (mjMAXIMP in mjmodel.h). MuJoCo documents
@@ -14,7 +14,7 @@ from typing import ClassVar
 from reference.checks import Positive, Valid, validated
 from reference.mechanism import Mechanism
 
-# solimp with the largest impedance, mjMAXIMP, for all gaps.
+# solimp with the largest impedance (mjMAXIMP) for all gaps.
 STIFFEST = (0.9999, 0.9999, 0.001, 0.5, 1.0)
 
 
@@ -41,10 +41,10 @@ class _Spring(Valid, ABC):
 
 @dataclass(frozen=True)
 class Shipped(_Spring):
-    """MuJoCo's defaults: a time constant of 0.02 s for all steps, and an impedance that grows with the gap.
+    """MuJoCo's defaults: the time constant is 0.02 s for all steps, and the impedance grows with the gap.
 
-    The impedance is 0.9 at a gap of zero and 0.95 for gaps of at least a millimetre. R falls from 0.11 to 0.053 of the
-    inverse inertia (checked by a test in `tests/engines/test_mujoco_upstream.py`).
+    The impedance is 0.9 at a gap of zero and 0.95 for gaps of at least a millimetre. R decreases from 0.11 to 0.053 of
+    the inverse inertia (checked in `tests/engines/test_mujoco_upstream.py`).
     """
 
     impedance: ClassVar[tuple[float, float, float, float, float]] = (0.9, 0.95, 0.001, 0.5, 2.0)
@@ -55,12 +55,12 @@ class Shipped(_Spring):
 
 @dataclass(frozen=True)
 class TiedToStep(_Spring):
-    """Springs with documented settings only: a time constant of some steps, and the largest impedance.
+    """Documented settings alone: the time constant is `steps` steps, and the impedance has its largest value.
 
-    The gap is R f / k, so it falls as the square of the step. MuJoCo increases a shorter time constant to two steps,
+    The gap R f / k is proportional to the square of the step. MuJoCo increases a shorter time constant to two steps,
     unless the flag `refsafe` is disabled (mjDSBL_REFSAFE in mjtype.h). The integrator "discrete" keeps short time
-    constants of equalities, and increases those of contacts to about one step (4.0.1, checked by a test in
-    `tests/engines/test_mujoco_upstream.py`). `time_constant` is valid for all other integrators.
+    constants of equalities, and increases those of contacts to about one step (4.0.1, checked in
+    `tests/engines/test_mujoco_upstream.py`). `time_constant` is valid for the other integrators.
     """
 
     steps: Positive = 5.0
@@ -70,18 +70,18 @@ class TiedToStep(_Spring):
 
     @validated
     def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """solref, before MuJoCo increases its time constant."""
+        """solref before MuJoCo increases the time constant."""
         return self.steps * dt, 1.0
 
 
 @dataclass(frozen=True)
 class Hardened(_Spring):
-    """Compliances that are multiplied by `softening`, and springs that are as slow as the motion allows.
+    """Compliances are multiplied by `softening`, and springs are as slow as the motion allows.
 
-    MuJoCo reads the estimate in R from fields that can be changed after a model is compiled. With R near zero a loop
-    needs no stiff spring. Its time constant is `share` of the time scale of the mechanism, and at least `steps` steps.
-    The integrator RK4 then has its full order 4. `eased`: whether compliances that are below the rounding of the solver
-    Newton are increased, see `engines.mujoco.solver_check`.
+    MuJoCo reads the estimate in R from fields that our code changes after compilation. With R near zero a loop needs no
+    stiff spring. The time constant is `share` times the time scale of the mechanism, and at least `steps` steps. RK4
+    then has its full order 4. `eased`: increase compliances that are below the rounding of the solver Newton, see
+    `engines.mujoco.solver_check`.
     """
 
     softening: Positive = 1e-8  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -94,7 +94,7 @@ class Hardened(_Spring):
 
     @validated
     def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """solref in its direct form, -stiffness and -damping per unit of inertia, which MuJoCo does not change."""
+        """solref as -stiffness and -damping per unit of inertia, which MuJoCo does not change."""
         constant = self.time_constant(mechanism, dt)
         return -1 / constant**2, -2 / constant
 
