@@ -54,7 +54,7 @@ class WarningLog:
     reset_at: float | None = None  # s
 
     def record(self, message: str) -> None:
-        """Record a warning. MuJoCo calls this function before it resets a state, so `data.time` is that of the failed step."""
+        """Record a warning. MuJoCo calls this before it resets a state, when `data.time` belongs to the failed step."""
         text = " ".join(str(message).split(" Time = ")[0].split())
         self.messages.setdefault(text)
         if "value in Q" in text and self.reset_at is None and self.data is not None:
