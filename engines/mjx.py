@@ -232,7 +232,7 @@ def _solver_residual(model: MuJoCoModel, data: Any, answer: Any) -> float:
 
 
 def run_worlds(engine: Mjx, mechanisms: Sequence[Mechanism], dt: float, steps: int) -> tuple[Array, float]:
-    """As `engines.mujoco_warp.run_worlds`, by `jax.vmap` over the fields that differ."""
+    """The same as `engines.mujoco_warp.run_worlds`; `jax.vmap` maps over the fields that differ between mechanisms."""
     import jax
     import jax.numpy as jnp
 

@@ -137,14 +137,14 @@ class NewtonModel:
         return warp.transform(warp.vec3(x, y, 0.0), warp.quat_from_axis_angle(warp.vec3(0.0, 0.0, 1.0), angle))
 
     def _finalized(self, builders: Sequence[Any]) -> Any:
-        """Newton's model of one world, or of several."""
+        """Newton's model of all worlds."""
         whole = builders[0]
         if len(builders) > 1:
             whole = self._new_builder()
             for builder in builders:
                 whole.add_world(builder)
         model = whole.finalize(device=self.device)
-        model.rigid_contact_max = len(builders)  # one for each world; with None, Kamino makes room for 1000
+        model.rigid_contact_max = len(builders)  # one for each world; with None, Kamino allocates 1000
         return model
 
     def _new_builder(self) -> Any:
@@ -155,7 +155,7 @@ class NewtonModel:
         return builder
 
     def builder(self) -> Any:
-        """Newton's builder with the mechanism."""
+        """A builder of Newton that contains the mechanism."""
         builder = self._new_builder()
         for body in self.mechanism.bodies:
             inertia = [value for row in np.diag([body.inertia] * 3).tolist() for value in row]
@@ -268,7 +268,7 @@ class NewtonModel:
 
 
 def run_worlds(engine: Newton, mechanisms: Sequence[Mechanism], dt: float, steps: int) -> tuple[Array, float]:
-    """As `engines.mujoco_warp.run_worlds`; the mechanisms start at rest, and `steps` is even."""
+    """The same as `engines.mujoco_warp.run_worlds`, for mechanisms at rest at t = 0 and an even number of steps."""
     models = [NewtonModel(engine, mechanism, dt) for mechanism in mechanisms]
     first = models[0]
     warp = first.warp

@@ -1,15 +1,15 @@
 """User rows: constraint rows that our code writes into MuJoCo's solver in every stage of the integrator.
 
 MuJoCo has no joint for a skate or for rolling, but its solver accepts any row J a = right. An equality of a tendon
-reserves the row, and the callback `mjcb_control` overwrites the row in `efc_J` and `efc_aref`. MuJoCo calls it between
-the reference accelerations and the solver, in all four stages of RK4 (mj_forwardSkip in engine_forward.c). User rows
-need the dense Jacobian and no islands. They also need a primal solver (Newton or CG), since the dual solver builds its
-matrix before the callback.
+reserves the row, and the callback `mjcb_control` overwrites the row in `efc_J` and `efc_aref`. In all four stages of
+RK4, MuJoCo calls the callback after it computes the reference accelerations and before the solver (mj_forwardSkip in
+engine_forward.c). User rows need the dense Jacobian and no islands. They also need a primal solver (Newton or CG),
+since the dual solver builds its matrix before the callback.
 
-`write_rows` computes the motion of the bodies from the coordinates of the tree, evaluates the rows of each joint, and
-transforms them to the coordinates. Without numba, Python evaluates the same functions on lists. The position of a
-rolling body is evaluated before them in Python. All functions that numba compiles are in this file, since numba's cache
-does not detect changes in other files.
+`write_rows` computes the motion of the bodies from the tree coordinates, evaluates the rows of each joint, and
+transforms the rows to tree coordinates. Without numba, Python evaluates the same functions on lists. Before
+`write_rows`, Python evaluates the positions of rolling bodies. All functions that numba compiles are in this file,
+since numba's cache does not detect changes in other files.
 """
 
 from __future__ import annotations
@@ -31,24 +31,24 @@ except ImportError:
     njit = None
 
 Array = NDArray[np.float64]
-# x, y, angle, vx, vy, omega of a body [m, m, rad, and per s]. All are zero for the ground, and angles are not wrapped.
+# x, y, angle, vx, vy, omega of a body [m, m, rad, and per s], with unwrapped angles; zero for the ground.
 State = tuple[float, float, float, float, float, float]
-# The factors of the accelerations in x, y and angle of the first and then the second body, and the value of J a.
+# Factors of the accelerations (x, y, angle) of the first body and of the second body, and the value of J a.
 Row = tuple[float, float, float, float, float, float, float]
 
 ROW_KINDS = ("skate", "slot", "rod", "roll")
 SKATE, SLOT, _, ROLL = range(len(ROW_KINDS))
-# A plan is an array with a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION numbers for the
-# motion of each link and of the ground. The following names are indices in these parts.
-LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD: time [s] by which the pose is predicted.
-# SLIDE, ACROSS and ROTATION are columns, or -1 for none. START_X, START_Y and START_ANGLE are the pose at t = 0.
+# A plan is an array. It contains a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION numbers
+# for each link and the ground. The following names are indices in these parts.
+LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD [s]: the pose is predicted for this time.
+# SLIDE, ACROSS and ROTATION are columns, or -1. START_X, START_Y and START_ANGLE are the pose at t = 0.
 PARENT, SLIDE, ACROSS, ROTATION, START_X, START_Y, START_ANGLE = range(7)
 ARM_X, ARM_Y, ANCHOR_X, ANCHOR_Y, DIRECTION_X, DIRECTION_Y, LINK = range(7, 14)
 KIND, FIRST, SECOND, NUMBERS, JOINT = 0, 1, 2, 3, 11
-# TURNED is the angle since t = 0. AX and AY are accelerations for zero accelerations of the coordinates. The rotation
-# turns the link about PIVOT. ALONG is the direction of the slide.
+# TURNED is the rotation since t = 0, about PIVOT. AX and AY are accelerations for zero accelerations of the
+# coordinates. ALONG is the direction of the slide.
 X, Y, TURNED, VX, VY, OMEGA, AX, AY, PIVOT_X, PIVOT_Y, ALONG_X, ALONG_Y, ANGLE, MOTION = range(14)
-NO_PARENT = -1  # the parent of a link that moves freely
+NO_PARENT = -1  # parent index of a free link
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -56,7 +56,7 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
         return function
     try:
         return njit(error_model="numpy", cache=True)(function)
-    except RuntimeError:  # without a writable folder for the cache, each process compiles
+    except RuntimeError:  # the cache needs a writable folder
         return njit(error_model="numpy")(function)
 
 
@@ -68,7 +68,7 @@ def _rotated(angle: float, x: float, y: float) -> tuple[float, float]:
 
 @compiled
 def skate_row(numbers: Any, first: State, second: State) -> Row:
-    """The row of a skate. `numbers`: a point [m] and an angle [rad] of the second body, damping of slip [1/s]."""
+    """The row of a skate; `numbers`: point [m] and angle [rad] in the second body, damping of slip [1/s]."""
     point_x, point_y, blade, damping = numbers[0], numbers[1], numbers[2], numbers[3]
     x1, y1, _, vx1, vy1, omega1 = first
     x2, y2, angle, vx2, vy2, omega2 = second
@@ -91,7 +91,7 @@ def skate_row(numbers: Any, first: State, second: State) -> Row:
 
 @compiled
 def _points(numbers: Any, first: State, second: State) -> tuple[float, ...]:
-    """The arms of a point on each body in the directions of the world, and the relative velocity of the points."""
+    """The arms of the two points in world directions, and the points' relative velocity."""
     _, _, angle1, vx1, vy1, omega1 = first
     _, _, angle2, vx2, vy2, omega2 = second
     own_x1, own_y1 = _rotated(angle1, numbers[0], numbers[1])
@@ -103,7 +103,7 @@ def _points(numbers: Any, first: State, second: State) -> tuple[float, ...]:
 
 @compiled
 def slot_row(numbers: Any, first: State, second: State) -> Row:
-    """The row of a slot. `numbers`: a point on each body [m], line angle [rad], stiffness [1/s^2], damping [1/s]."""
+    """The row of a slot; `numbers`: two points [m], line angle [rad], stiffness [1/s^2], damping [1/s]."""
     own_x1, own_y1, own_x2, own_y2, rate_x, rate_y = _points(numbers, first, second)
     line, stiffness, damping = numbers[4], numbers[5], numbers[6]
     omega1, omega2 = first[5], second[5]
@@ -125,7 +125,7 @@ def slot_row(numbers: Any, first: State, second: State) -> Row:
 
 @compiled
 def rod_row(numbers: Any, first: State, second: State) -> Row:
-    """The row of a rod. `numbers`: a point on each body [m], the length [m], stiffness [1/s^2], damping [1/s]."""
+    """The row of a rod; `numbers`: two points [m], length [m], stiffness [1/s^2], damping [1/s]."""
     own_x1, own_y1, own_x2, own_y2, rate_x, rate_y = _points(numbers, first, second)
     length, stiffness, damping = numbers[4], numbers[5], numbers[6]
     x, y = second[0] + own_x2 - first[0] - own_x1, second[1] + own_y2 - first[1] - own_y1
@@ -146,8 +146,8 @@ def rod_row(numbers: Any, first: State, second: State) -> Row:
 def roll_rows(numbers: Any, first: State, second: State) -> tuple[Row, Row]:
     """The rows in x and y of z_2 - z_1 - e^(i phi_1) P(phi_2 - phi_1) = 0.
 
-    `numbers`: stiffness [1/s^2], damping [1/s], and P, P', P'' [m, m/rad, m/rad^2]. `reference.rolling.roll` has the
-    same two conditions along the tangent and the normal.
+    `numbers`: stiffness [1/s^2], damping [1/s], and P, P', P'' [m, m/rad, m/rad^2]. `reference.rolling.roll` has
+    equivalent rows along the tangent and the normal.
     """
     stiffness, damping = numbers[0], numbers[1]
     x1, y1, angle1, vx1, vy1, omega1 = first
@@ -170,7 +170,7 @@ def roll_rows(numbers: Any, first: State, second: State) -> tuple[Row, Row]:
 def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
     """Write the motion of the link at index `at`, for the coordinates q + ahead v, to index `to`.
 
-    The motion of its parent must have been written before.
+    The motion of the parent must already be in the plan.
     """
     parent, slide, rotation = int(plan[at + PARENT]), int(plan[at + SLIDE]), int(plan[at + ROTATION])
     ahead = plan[AHEAD]
@@ -203,7 +203,7 @@ def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
 
 @compiled
 def _write_row(plan: Any, moving: int, ends: tuple[int, int], row: Row, jacobian: Any, line: int, width: int) -> float:
-    """Write the row of a joint in the coordinates of the tree from index `line` on; returns the value of J a."""
+    """Write the row of a joint in tree coordinates from index `line` on, and return the value of J a."""
     links, right = int(plan[LINK_COUNT]), row[6]
     for column in range(line, line + width):
         jacobian[column] = 0.0
@@ -235,12 +235,12 @@ def _state(plan: Any, m: int) -> State:
 
 @compiled
 def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None:
-    """Write the rows of all joints into MuJoCo's arrays. All are NaN if one is not finite, so that MuJoCo resets."""
+    """Write the rows of all joints into MuJoCo's arrays; if a value is not finite, write NaN so that MuJoCo resets."""
     links, first_row, width = int(plan[LINK_COUNT]), int(plan[FIRST_ROW]), len(v)
     all_joints = HEADER + LINK * links
     moving, row = all_joints + JOINT * int(plan[JOINT_COUNT]), first_row
     if len(reference) <= first_row:
-        return  # MuJoCo has no memory for its rows and has warned of this
+        return  # MuJoCo has no memory for the rows and has already warned
     for link in range(links):
         _move(plan, HEADER + LINK * link, moving, moving + MOTION * link, q, v)
     for at in range(all_joints, moving, JOINT):
@@ -270,9 +270,9 @@ def write_rows(plan: Any, q: Any, v: Any, jacobian: Any, reference: Any) -> None
 
 
 class RowWriter:
-    """Writes the rows of joints from the row `first_row` on, at the pose that the velocity predicts after `ahead` [s].
+    """Writes the rows of joints from `first_row` on, at the pose that the velocity predicts after `ahead` [s].
 
-    `address`: the index of each coordinate of the tree in qpos and qvel.
+    `address`: indices of the tree coordinates in qpos and qvel.
     """
 
     def __init__(
@@ -310,12 +310,12 @@ class RowWriter:
         if njit is not None:
             write_rows(self._plan, q, v, jacobian, reference)
             return
-        # Python reads and writes lists faster than arrays.
+        # In Python, lists are faster than arrays.
         plan, rows, right = self._plan.tolist(), [0.0] * (self.size * len(v)), [0.0] * self.size
         first_row, plan[FIRST_ROW] = int(plan[FIRST_ROW]), 0
         try:
             write_rows(plan, q.tolist(), v.tolist(), rows, right)
-        except (ValueError, OverflowError, ZeroDivisionError):  # in these cases numba returns infinity or NaN
+        except (ValueError, OverflowError, ZeroDivisionError):  # numba returns infinity or NaN instead
             rows, right = [0.0] * len(rows), [math.nan] * len(right)
         if len(reference):
             jacobian[first_row * len(v) :][: len(rows)] = rows
@@ -331,9 +331,9 @@ class RowWriter:
 def row_callback(
     compiled: Any, tree: Tree, address: Sequence[int], joints: Sequence[UserRowJoint], softening: float
 ) -> Callback:
-    """The callback that writes the rows of joints in place of the last equalities of the model.
+    """The callback that writes the rows of joints in place of the model's last equalities.
 
-    The compliance of a row is `softening` times its inverse inertia. The two rows of a roll get the mean of their
+    The compliance of a row is `softening` times the inverse inertia. The two rows of a roll use the mean of the two
     inverse inertias, so that the compliance does not depend on the directions of the axes.
     """
     data = mujoco.MjData(compiled)

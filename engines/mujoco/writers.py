@@ -1,8 +1,8 @@
 """Writers of MJCF and URDF files for `crosscheck export`, and MuJoCo's viewer for `crosscheck view`.
 
 The files do not need this suite. An MJCF file is the output of `mujoco.MjSpec` with all digits instead of six. Bodies
-have their names in the mechanism, and the initial state is a keyframe. Bars and points show the mechanism. They have no
-mass and no contacts.
+keep the mechanism's names, and the initial state is a keyframe. Bars and points without mass and contacts show the
+mechanism.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from reference.plane import rotated
 if TYPE_CHECKING:
     from engines.mujoco.model import MuJoCoModel
 
-MODEL_FLAGS = ("contact", "island")  # the flags that our models may disable
+MODEL_FLAGS = ("contact", "island")  # flags that our models may disable
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
-THICKNESS = 0.02  # of bars, relative to the mechanism's length
+THICKNESS = 0.02  # thickness of bars relative to the mechanism's length
 NO_CONTACT = {"contype": "0", "conaffinity": "0", "mass": "0"}
 
 
@@ -69,7 +69,7 @@ def show(text: str) -> None:
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Unsupported("there is no display")
     try:
-        import mujoco.viewer  # an optional part of MuJoCo that needs a window system
+        import mujoco.viewer  # this optional part of MuJoCo needs a window system
     except ImportError as reason:
         raise Unsupported(f"MuJoCo's viewer is not installed: {reason}") from None
     model = mujoco.MjModel.from_xml_string(text)
@@ -109,7 +109,7 @@ def urdf(mechanism: Mechanism) -> str:
 
 
 def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapping[int, Vector]) -> None:
-    """Add a body and its joint. The frame of the body is at its joint and parallel to the world at t = 0."""
+    """Add a body and its joint; the body's frame is at the joint and parallel to the world at t = 0."""
     body = mechanism.bodies[link.body]
     if link.kind == "free" or (link.kind == "slot" and link.turns):
         raise Unsupported(f"body {body.name!r} has more freedom than a hinge or a slide, which URDF cannot represent")
@@ -133,7 +133,7 @@ def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapp
 
 
 def _upright(x: float, y: float) -> str:
-    """A vector of the plane in the frame of a URDF file, where z is upwards."""
+    """A vector of the plane in the frame of a URDF file, in which z is upwards."""
     return _row((x, 0.0, y))
 
 
@@ -176,9 +176,9 @@ def _option(option: Any) -> xml.Element:
 
 
 def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
-    """Replace the numbers in the text of a mujoco.MjSpec, which have six digits.
+    """Replace the numbers in the text of a mujoco.MjSpec, which have only six digits.
 
-    Positions of shapes come from the compiled model, since the plane below a blade is raised after compilation.
+    Positions of shapes come from the compiled model, since our code raises the plane below a blade after compilation.
     """
     for element in root.iter("body"):
         body = spec.body(element.get("name"))
@@ -195,7 +195,7 @@ def _write_all_digits(root: xml.Element, spec: Any, compiled: Any) -> None:
     coefficients = iter(compiled.wrap_prm)
     for element in root.find("tendon") or ():
         tendon = spec.tendon(element.get("name"))
-        # In newer releases these coefficients are polynomials, whose trailing zeros are omitted.
+        # In newer releases these coefficients are polynomials, which are written without trailing zeros.
         polynomials = {name: np.trim_zeros(np.ravel(getattr(tendon, name)), "b") for name in ("stiffness", "damping")}
         _set(element, springlength=tendon.springlength, **polynomials)
         for child, coefficient in zip(element, coefficients, strict=False):
@@ -241,7 +241,7 @@ def _row(values: Any) -> str:
 
 
 def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
-    """Add bars between the joints of every "body i" without shapes, and a camera that looks at the plane."""
+    """Add bars between the joints of bodies without shapes, and a camera that looks at the plane."""
     size = THICKNESS * mechanism.length_scale
     visual = xml.Element("visual")
     xml.SubElement(visual, "global", {"azimuth": "90", "elevation": "-90"})
@@ -270,7 +270,7 @@ def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
 
 
 def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
-    """The points of the joints of a body or the ground. A body with fewer than two also gets its centre of mass."""
+    """The points of the joints of a body or the ground, and the centre of mass of a body with fewer than two points."""
     points = [point for joint in mechanism.joints for owner, point in joint.fixed_points if owner == name]
     if name is not None and len(set(points)) < 2:
         points.append((0.0, 0.0))

@@ -1,24 +1,24 @@
 """Constructions of pins, welds, rods, gears and drives that the kinematic tree does not enforce.
 
-A pin or a weld that closes a loop is a `connect`. One of its three rows is normal to the plane and therefore empty. The
-angle of a weld or a gear is the length of a fixed tendon, which is a sum of tree coordinates with constant factors. An
-equality keeps the length constant. It has no velocity term, and needs none since the factors are constant.
+A pin or a weld that closes a loop is a `connect`. One row of the `connect` is normal to the plane and therefore empty.
+The angle of a weld or a gear is the length of a fixed tendon, which is a sum of tree coordinates with constant factors.
+An equality keeps this length constant, without a velocity term because the factors are constant.
 
 `RodBy` is the construction of a rod:
 
-- "tendon": an equality of a spatial tendon between two sites, which MuJoCo provides. Up to 4.0.1 it has no velocity
-  term -(dJ/dt) v, so its spring supplies this force by a gap.
+- "tendon": an equality of a spatial tendon between two sites. Up to 4.0.1 the equality lacks the velocity term -(dJ/dt)
+  v, so a gap of its spring supplies this force.
 - "rows": a row for the rod that a callback writes in every stage.
 
 `DriveBy` is the construction of a drive whose rotation is a tree coordinate:
 
-- "inertia": the armature of the coordinate is so large that no force can accelerate it.
-- "overwrite": position and velocity are overwritten after every step (`engines.mujoco.running`). MuJoCo's solver does
-  not take this into account, so its forces in the loop are wrong.
+- "inertia": the armature is so large that no force can accelerate the coordinate.
+- "overwrite": our code overwrites position and velocity after every step (`engines.mujoco.running`). MuJoCo's solver
+  does not know this motion, so the forces in a loop are wrong.
 
-If the rotation is a sum of several coordinates, a fixed tendon is the difference of this sum and the angle of a clock.
-The clock is an auxiliary wheel with the prescribed rate and a large armature. An equality keeps the length of the
-tendon constant, so the drive is as soft as a loop.
+If the rotation is a sum of several coordinates, a fixed tendon is the difference between this sum and the angle of a
+clock. The clock is an auxiliary wheel with the prescribed rate and a large armature. An equality keeps the length of
+the tendon constant, so the drive is as soft as a loop.
 """
 
 from __future__ import annotations
@@ -39,12 +39,13 @@ DriveBy = Literal["inertia", "overwrite"]
 
 
 def add_pins(builder: ModelBuilder, pins: Sequence[Pin | Weld]) -> None:
-    """Add a `connect` for each pin. Its force acts on the body `name1`, the second body unless that is the ground."""
+    """Add a `connect` for each pin, whose `name1` is the second body unless the second body is the ground."""
     for pin in pins:
         names = [builder.spec_name(name) for name in (pin.first, pin.second)]
         name, point = (pin.second, pin.second_point) if pin.second is not None else (pin.first, pin.first_point)
         if pin.second is None:
-            # The anchor is in the frame of `name1`. Its rounding is smaller in the frame of a body than in the world.
+            # The anchor is in the frame of `name1`; a body's frame causes smaller rounding errors than the world's
+            # frame.
             names.reverse()
         connect = builder.add_equality(mujoco.mjtEq.mjEQ_CONNECT, names[1], names[0], rows=2)
         connect.data[:3] = [*world_offset(builder.mechanism, name, point), 0.0]
@@ -57,7 +58,7 @@ def add_welds(builder: ModelBuilder, welds: Sequence[Weld]) -> None:
 
 
 def add_gears(builder: ModelBuilder, gears: Sequence[Gear]) -> None:
-    """Keep the angle of the second body minus `ratio` times that of the first at its initial value."""
+    """Keep second angle - ratio * first angle at its initial value."""
     for gear in gears:
         factors = dict(builder.tree.turning(None, gear.second))
         for column, sign in builder.tree.turning(None, gear.first).items():
@@ -76,7 +77,7 @@ def add_rods(builder: ModelBuilder, rods: Sequence[Rod]) -> None:
 
 
 def add_drives(builder: ModelBuilder, drives: Sequence[Drive]) -> None:
-    """Drive a coordinate, or a sum of coordinates, for each drive. Raises Unsupported if two drive one coordinate."""
+    """Drive a coordinate or a sum of coordinates. Raises Unsupported for a second drive of a coordinate."""
     for drive in drives:
         factors = builder.tree.turning(drive.first, drive.second)
         if len(factors) != 1:
@@ -91,7 +92,7 @@ def add_drives(builder: ModelBuilder, drives: Sequence[Drive]) -> None:
 
 
 def _add_geared_drive(builder: ModelBuilder, drive: Drive, factors: Mapping[int, float]) -> None:
-    """Keep the difference of a sum of coordinates and the angle of a clock constant. Raises Unsupported."""
+    """Keep the difference between a sum of coordinates and the angle of a clock constant. Raises Unsupported."""
     by = builder.settings.drive
     if by != "inertia" or not factors:
         first, second = (repr(name) if name else "the ground" for name in (drive.first, drive.second))
@@ -117,5 +118,5 @@ def _driving_inertia(builder: ModelBuilder) -> float:
 
 
 def inertia_scale(mechanism: Mechanism) -> float:
-    """An estimate of the largest inertia about a joint of the mechanism [kg m^2]."""
+    """An estimate [kg m^2] of the largest inertia about a joint."""
     return sum(body.inertia + body.mass * mechanism.length_scale**2 for body in mechanism.bodies)

@@ -1,8 +1,7 @@
 """Constructions of a Roll in MuJoCo: contact with friction, or two rows that a callback writes in every stage.
 
-The rows of a contact obey J a = -b J v - k gap. They do not have the term -(dJ/dt) v of a curved or moving contact (in
-4.0.1). The velocity of rolling is then wrong by about a time constant times this term, and errors are at best of first
-order.
+The rows of a contact obey J a = -b J v - k gap. In 4.0.1 they lack the term -(dJ/dt) v of a curved or moving contact.
+The error of the rolling velocity is therefore about a time constant times this term, and the order is at most 1.
 """
 
 from __future__ import annotations
@@ -30,22 +29,23 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 Cone = Literal["pyramidal", "elliptic"]
-# The distance of shapes that collide, relative to the length of the mechanism. It is above the rounding of a contact.
+# Distance at which shapes collide, relative to the mechanism's length. It is above the rounding of a contact.
 TOUCH = 1e-12
-# A contact with a smaller reaction, relative to the largest one, counts as lost. The limit is far above rounding.
+# A contact is lost if its reaction relative to the largest reaction is smaller than this. The limit is far above
+# rounding.
 NO_FORCE = 1e-9
-# The largest rotation along the curves in a step [rad] with which a method of order 4 reaches its order.
+# Largest rotation [rad] of a contact along the curves in a step. Methods of order 4 then reach their order.
 MAX_CONTACT_TURN = 0.1
 
 
 @dataclass(frozen=True)
 class RollContact(Valid):
-    """Settings of contact and friction. The default values are those of MuJoCo.
+    """Settings of contact and friction, by default MuJoCo's values.
 
-    `friction`: the coefficient of friction. `steps`: the time constant of the contact in steps, with the largest
-    impedance; None for MuJoCo's 0.02 s. `stick`: whether slip decays at the largest rate that the integrator allows,
-    2/dt for RK4 and 1/dt for others. MuJoCo reads this rate (`solreffriction`) only with the elliptic cone, as
-    `tests/engines/test_mujoco_upstream.py` checks. Raises InvalidMechanism for `stick` with another cone.
+    `friction`: coefficient of friction. `steps`: time constant of the contact in steps, with the largest impedance;
+    None for MuJoCo's 0.02 s. `stick`: make slip decay at the largest rate that the integrator allows, 2/dt for RK4 and
+    1/dt for others. MuJoCo reads this rate (`solreffriction`) only with the elliptic cone (checked in
+    `tests/engines/test_mujoco_upstream.py`). Raises InvalidMechanism for `stick` with another cone.
     """
 
     friction: Positive = 1.0
@@ -83,7 +83,7 @@ def _add_contacts(builder: ModelBuilder, rolls: Sequence[Roll], by: RollContact)
             geomname1=_add_shape(builder, roll, roll.first, roll.rolling.ground),
             geomname2=_add_shape(builder, roll, roll.second, roll.rolling.body),
             condim=3,
-            friction=[by.friction, by.friction, 0.005, 0.0001, 0.0001],  # condim 3 reads the first two
+            friction=[by.friction, by.friction, 0.005, 0.0001, 0.0001],  # condim 3 uses two values
             solref=list(reference),
             solimp=list(impedance),
             margin=TOUCH * builder.mechanism.length_scale,
@@ -97,10 +97,10 @@ def _add_contacts(builder: ModelBuilder, rolls: Sequence[Roll], by: RollContact)
 
 
 def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curve) -> str:
-    """Add a plane, a sphere or an ellipsoid for the curve of a body; returns the name of the geom.
+    """Add a plane, a sphere or an ellipsoid for the curve of a body, and return the name of the geom.
 
-    Body frames are parallel to the world at t = 0 (see `engines.tree`), so a shape is turned by the initial angle of
-    the body. A circle is a sphere, since a cylinder would touch at two points. Raises Unsupported for other curves.
+    Body frames are parallel to the world at t = 0 (`engines.tree`), so a shape is turned by the body's initial angle. A
+    circle is a sphere, since a cylinder would touch at two points. Raises Unsupported for other curves.
     """
     curve, shift, angle = unplaced(curve)
     index, body = builder.index(owner), builder.spec_body(owner)
@@ -119,7 +119,7 @@ def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curv
     turned = [math.cos(half), 0.0, 0.0, math.sin(half)]
     match curve:
         case Line() if owner is None:
-            # The z axis of a plane is its normal. It points out of the material, which is to the left of the line.
+            # The normal of a plane is its z axis, which points out of the material on the left of the line.
             normal, quarter = -1j * rect(1.0, curve.heading + angle), math.sqrt(0.5)
             upright = [quarter, -quarter * normal.imag, quarter * normal.real, 0.0]
             return add(mujoco.mjtGeom.mjGEOM_PLANE, complex(*curve.through), upright, [1.0, 1.0, 1.0])
@@ -147,10 +147,10 @@ def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curv
 def roll_warnings(
     mechanism: Mechanism, step: float, t: Array, pose: Array, twist: Array, reaction: Array
 ) -> list[RunWarning]:
-    """Warnings if a contact was lost, or if it moved along its curves too fast for the step [s].
+    """Warnings if a contact is lost, or if it moves along the curves too fast for the step [s].
 
-    t (times,); pose and twist (times, bodies, 3); reaction (times, rows). The contact of two curves moves along them
-    with the speed omega / (curvature_A + curvature_B), which is large for nearly conformal curves. In a step it turns
+    t (times,); pose and twist (times, bodies, 3); reaction (times, rows). A contact moves along the curves with the
+    speed omega / (curvature_A + curvature_B), which is large for nearly conformal curves. In a step the contact turns
     by omega dt / conformality, and this angle must be small.
     """
     warnings, begin = list[RunWarning](), 0

@@ -1,12 +1,12 @@
 """Constructions of a skate, for which MuJoCo has no joint. `SkateBy` is the construction:
 
 - "blade": a capsule that touches a plane, with friction across the capsule. MuJoCo's maintainers suggest this.
-- "predicted tendon": a fixed tendon, whose coefficients are rewritten before every step. They are the row of the skate
-  at the pose that the velocity predicts for the end of the step.
+- "predicted tendon": a fixed tendon whose coefficients are the row of the skate. Our code computes them before every
+  step, for the pose that the velocity predicts at the end of the step.
 - "rows": a row for the skate that a callback writes in every stage.
 
-Bodies cannot move out of the plane, so their weight does not press a blade on the ground. The ground is therefore
-raised until the contact force equals the weight of the mechanism.
+Bodies cannot move out of the plane, so weight does not press a blade on the ground. Our code therefore raises the
+ground until the contact force is equal to the weight of the mechanism.
 """
 
 from __future__ import annotations
@@ -26,25 +26,26 @@ from reference.joints import Skate
 from reference.mechanism import Mechanism
 
 SkateBy = Literal["rows", "predicted tendon", "blade"]
-# Constructions whose rows change only once per step. An integrator with four stages costs more without a gain.
+# Constructions whose rows change once per step. They use the integrator Euler, since four stages with the same row
+# would cost more without a smaller error.
 STEPWISE: tuple[SkateBy, ...] = ("predicted tendon",)
 
-# The coefficients along and across the blade. The first direction of friction is along a capsule, as a maintainer of
-# MuJoCo explains for skating on ice in github.com/google-deepmind/mujoco/issues/67.
+# Coefficients of friction along and across the blade. The first direction is along the capsule, as a maintainer of
+# MuJoCo explains in github.com/google-deepmind/mujoco/issues/67.
 BLADE_FRICTION = (1e-5, 10.0)
-TILT = 0.5  # rad, the tilt of a blade, so that only its lower end touches the ground.
-STANDARD_GRAVITY = 9.81  # m/s^2, the acceleration that defines the weight on the ground.
-BISECTIONS = 40  # Of the depth at which the contact force equals the weight.
-MAX_DOUBLINGS = 60  # Of the length of a blade.
-# The direct form of solref needs a stiffness that is not zero. This stiffness gives 1e-12 m/s^2 at a gap of 1 m.
+TILT = 0.5  # Tilt of a blade [rad], so that only the lower end touches the ground.
+STANDARD_GRAVITY = 9.81  # Acceleration [m/s^2] that defines the weight.
+BISECTIONS = 40  # Number of bisections for the depth at which the contact force is the weight.
+MAX_DOUBLINGS = 60  # Limit on doublings of a blade's length.
+# The direct form of solref does not permit zero. This stiffness gives 1e-12 m/s^2 at a gap of 1 m.
 NO_STIFFNESS = -1e-12
 
 
 def slip_damping(mechanism: Mechanism) -> float:
-    """The damping of slip in a user row [1/s]: the largest angular velocity of the mechanism.
+    """The damping [1/s] of slip in a user row, which is the largest initial angular velocity.
 
-    A skate has no gap, and its slip is rounding. This slip may decay as slowly as the bodies move, and a larger damping
-    would reduce the accuracy. The speed divided by a short arm would be a far larger rate.
+    The slip of a user row is rounding, so it may decay as slowly as the bodies move. A larger damping would reduce the
+    accuracy.
     """
     return max(abs(body.twist[2]) for body in mechanism.bodies) or 1 / mechanism.time_scale
 
@@ -65,15 +66,15 @@ def add_skates(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
 
 
 def _add_predicted_tendons(builder: ModelBuilder, joints: Sequence[UserRowJoint]) -> None:
-    """Add rows J v = 0 that hold at the end of a step, where J is the row at the predicted pose.
+    """Add rows J v = 0 at the end of a step, with J at the predicted pose.
 
-    The equality of a tendon acts on the length of the tendon. With a stiffness of almost zero only the damping acts, so
-    changes of the length by the new coefficients have no effect.
+    An equality acts on the length of a tendon, which changes with the coefficients. The stiffness is almost zero, so
+    that only the damping acts.
     """
     from engines.mujoco.user_rows import RowWriter  # it imports numba
 
     tree, spec, width = builder.tree, builder.spec, builder.tree.coordinates
-    # MuJoCo's compiler computes the scale of the compliance from the coefficients at t = 0.
+    # The compiler computes the scale of the compliance from the coefficients at t = 0.
     start, _ = RowWriter(tree, range(width), joints).rows(np.zeros(width), np.zeros(width))
     columns_of = [builder.moving_columns(joint) for joint in joints]
     for number, columns in enumerate(columns_of):
@@ -93,7 +94,7 @@ def _add_predicted_tendons(builder: ModelBuilder, joints: Sequence[UserRowJoint]
         entries = [row * compiled.nv + address[column] for row, columns in enumerate(columns_of) for column in columns]
         first = int(compiled.tendon_adr[compiled.tendon("skate 0").id])
         coefficients = compiled.wrap_prm[first : first + len(entries)]
-        # If every coordinate moves every skate, the rows are written directly into the coefficients.
+        # If all coordinates move all skates, the rows can be written directly into the coefficients.
         is_dense = np.array_equal(entries, np.arange(len(joints) * compiled.nv))
         jacobian, unused = coefficients if is_dense else np.zeros(len(joints) * compiled.nv), np.zeros(len(joints))
 
@@ -116,17 +117,17 @@ def _add_blades(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
     builder.needs_contacts = True
     builder.hook_makers.append(_raise_ground)
     no_other_contact: dict[str, Any] = {"contype": 0, "conaffinity": 0}
-    # A plane at height zero would be marked as being at the origin (geom_sameframe), and `geom_pos` would not be read.
+    # For a plane at height zero, geom_sameframe would be set, and MuJoCo would ignore `geom_pos`.
     height = 1e-3 * mechanism.length_scale
     plane = mujoco.mjtGeom.mjGEOM_PLANE
     spec.worldbody.add_geom(name="ice", type=plane, size=[0.0, 0.0, 1.0], pos=[0.0, 0.0, height], **no_other_contact)
     pair: dict[str, Any] = {"solref": list(builder.stiffness.reference(mechanism, builder.dt))}
     if not isinstance(builder.stiffness, Shipped):
-        # Friction acts as fast as the step allows. With its default stiffness the contact keeps a large force.
+        # Friction has the largest damping that the step allows. The default stiffness keeps the contact force large.
         pair = {"solreffriction": [-1e-9, -1 / builder.dt]}
     radius, length = 0.05 * mechanism.length_scale, 0.2 * mechanism.length_scale
     for skate in skates:
-        # The direction of the blade in the world at t = 0 is also its direction in MuJoCo's frame of the body.
+        # MuJoCo's frame of the body is parallel to the world at t = 0.
         heading = float(mechanism.pose[mechanism.body_index(skate.second or ""), 2] + skate.angle)
         low = np.array([*world_offset(mechanism, skate.second, skate.second_point), radius])
         along = np.array([math.cos(heading) * math.cos(TILT), math.sin(heading) * math.cos(TILT), math.sin(TILT)])
@@ -144,7 +145,7 @@ def _add_blades(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
 
 
 def _raise_ground(compiled: Any, _address: Sequence[int]) -> Hooks:
-    """Raise the ground until the contact forces equal the weight, which depends on the stiffness of the model."""
+    """Raise the ground until the contact forces are equal to the weight."""
     weight = float(compiled.body_mass.sum()) * STANDARD_GRAVITY
     ground, data = compiled.geom("ice").id, mujoco.MjData(compiled)
 
@@ -162,9 +163,9 @@ def _raise_ground(compiled: Any, _address: Sequence[int]) -> Hooks:
 
 
 def _lengthen_blades(compiled: Any, data: Any, carries: Callable[[float], bool]) -> float:
-    """Double the length of the blades until `carries` is true for the height [m] of their upper ends, and return it.
+    """Double the blades' length until `carries` is true for the height [m] of the upper ends, and return this height.
 
-    `carries(depth)`: whether the ground carries the weight at a depth [m]. An upper end below the ground would be a
+    `carries(depth)` is whether the ground carries the weight at a depth [m]. An upper end below the ground would be a
     second contact.
     """
     blades = [geom for geom in range(compiled.ngeom) if compiled.geom(geom).name.startswith("blade ")]
@@ -172,7 +173,7 @@ def _lengthen_blades(compiled: Any, data: Any, carries: Callable[[float], bool])
     for _ in range(MAX_DOUBLINGS):
         if carries(height):
             break
-        for blade in blades:  # the z axis of a blade points down to its lower end, which stays where it is
+        for blade in blades:  # the z axis of a blade points to its lower end, which does not move
             half = compiled.geom_size[blade, 1]
             compiled.geom_pos[blade] -= half * data.geom_xmat[blade].reshape(3, 3)[:, 2]
             compiled.geom_size[blade, 1], compiled.geom_rbound[blade] = 2 * half, compiled.geom_rbound[blade] + half

@@ -1,16 +1,16 @@
 """Constructions of slots that are no slide of the kinematic tree.
 
-If a slot keeps the centre of mass of a free body on a line of the ground, it is an equality of a fixed tendon. `SlotBy`
-is the construction of all other slots:
+If a slot keeps the centre of mass of a free body on a line of the ground, the slot is an equality of a fixed tendon.
+`SlotBy` is the construction of other slots:
 
 - "halves": the second body is split into two halves with the same centre of mass. Joints of the tree let one half slide
-  and turn in the first body, and a `weld` joins the halves. MuJoCo provides all of these elements.
+  and turn in the first body, and a `weld` joins the halves.
 - "rows": a row for the slot that a callback writes in every stage.
 
-With rows, a model has one body, two coordinates and five solver rows less than with halves, and a step takes a fifth
-less time. (Three of the six rows of a weld are empty in the plane.) With the settings of TUNED and steps of about
-1e-3 s, the error of a slotted lever is 2.8e-7 rad with rows and 6.2e-7 rad with halves. The error of an arm and a block
-in free coordinates is 4.4e-6 with rows and 1.4e-6 with halves.
+A model with rows has one body, two coordinates and five solver rows less than a model with halves, and a step takes a
+fifth less time. (Three of the six rows of a weld are empty in the plane.) The following errors are for TUNED and steps
+of about 1e-3 s. A slotted lever has an error of 2.8e-7 rad with rows and 6.2e-7 rad with halves. An arm and a block in
+free coordinates have an error of 4.4e-6 with rows and 1.4e-6 with halves.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ def add_slots(builder: ModelBuilder, slots: Sequence[Slot]) -> None:
 
 
 def free_link_on_fixed_line(slot: Slot, tree: Tree) -> Link | None:
-    """The link of a free body whose centre of mass the slot keeps on a line of the ground; None for other slots.
+    """The link of the slot's second body, if it is free and the slot keeps its centre of mass on a line of the ground.
 
-    The gap of such a slot is a sum of two coordinates with constant factors.
+    The gap of such a slot is a sum of two coordinates with constant factors. The result is None for other slots.
     """
     link = next((link for link in tree.links if tree.mechanism.bodies[link.body].name == slot.second), None)
     if slot.first is None and link is not None and link.kind == "free" and not any(slot.second_point):
@@ -62,8 +62,8 @@ def _add_tendon(builder: ModelBuilder, slot: Slot, column: int) -> None:
 def _add_half(builder: ModelBuilder, slot: Slot) -> None:
     """Let a half of the second body slide and turn in the first body, and weld it to the other half.
 
-    The halves are equal, since the compliance of a weld grows as its lighter body becomes lighter. If the second body
-    is the ground, the auxiliary body does not move and may have any mass. It has half the mass of the first body.
+    The halves are equal, since a lighter half would increase the compliance of the weld. If the second body is the
+    ground, the auxiliary body does not move. It then has half the mass of the first body, which has no effect.
     """
     spec, mechanism = builder.spec, builder.mechanism
     first, second = builder.index(slot.first), builder.index(slot.second)
@@ -86,9 +86,8 @@ def _add_half(builder: ModelBuilder, slot: Slot) -> None:
 
 
 def _start_rates(builder: ModelBuilder, slot: Slot, direction: tuple[float, float]) -> tuple[float, float]:
-    """The velocity of the second body relative to the first one at t = 0.
-
-    Its components are the velocity of the second body's point along the slot [m/s], and the angular velocity [rad/s].
+    """The initial relative velocities of the bodies: along the slot at the second body's point [m/s], and angular
+    [rad/s].
     """
     mechanism = builder.mechanism
     point = np.array(world_offset(mechanism, slot.second, slot.second_point))

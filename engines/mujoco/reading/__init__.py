@@ -46,9 +46,9 @@ MODEL_SUFFIXES = (".xml", ".mjcf", ".urdf", ".mjb")
 def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: bool = True) -> Reading:
     """The mechanism of a mujoco.MjModel in the state of a mujoco.MjData, by default in the model's initial state.
 
-    `without`: kinds of elements to switch off in a copy of the model. `closing`: whether to close gaps of equalities
-    that come from rounded digits. Raises Unsupported with the name of an element without a planar counterpart. Raises
-    InvalidMechanism for a state that violates the equalities of the model.
+    `without`: kinds of elements to switch off in a copy of the model. `closing`: whether to close gaps that come from
+    rounded digits. Raises Unsupported with the name of an element without a planar counterpart. Raises InvalidMechanism
+    for a state that violates the equalities of the model.
     """
     planar, users, tilt = _plane_of(model, mujoco.MjData(model) if data is None else data, without)
     joints = [*tree_joints(planar), *drives(planar), *equalities(planar)]
@@ -76,9 +76,9 @@ def read(model: Any, data: Any = None, without: Sequence[str] = (), closing: boo
 
 
 def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarModel, Any, float]:
-    """The planar model in a given state, the model to run, and the largest tilt [rad] of its joints.
+    """The planar model in a state, the model to run, and the largest tilt [rad] of its joints.
 
-    Both models are copies without the given elements. Raises Unsupported if the model does not move in a plane.
+    Both models are copies without the elements to switch off. Raises Unsupported if the model does not move in a plane.
     """
     model = copy.copy(model)
     for element in without:
@@ -90,7 +90,7 @@ def _plane_of(model: Any, state: Any, without: Sequence[str]) -> tuple[PlanarMod
         reason = "MuJoCo stops slow bodies, even a pendulum at its turning point, but joints do not"
         raise refuse("flag sleep", f"{reason}; {left_out('sleep')}")
     _refuse_not_finite(model, started)
-    # Contacts and the solver are not evaluated yet, since a model with too many bodies is refused first.
+    # Contacts and the solver are evaluated later, after a model with too many bodies is refused.
     mujoco.mj_kinematics(model, started)
     mujoco.mj_comPos(model, started)
     frame = find_frame(model, started)
@@ -132,7 +132,7 @@ def _note_gravity_across(planar: PlanarModel) -> None:
 
 
 def _note_limits_and_contacts(planar: PlanarModel) -> None:
-    """Note limits and contacts, which are not in the mechanism. A judged motion must not reach them."""
+    """Add notes on limits and contacts, which the mechanism does not have and a judged motion must not reach."""
     model, limit = planar.model, "its limit is left out, since it is not reached in the judged motion"
     for element in limited_forces(model):
         planar.note(element, f"its force is limited; {limit}")
@@ -151,9 +151,10 @@ def _note_limits_and_contacts(planar: PlanarModel) -> None:
 
 
 def _with_armature(planar: PlanarModel) -> tuple[tuple[Any, ...], list[Force]]:
-    """Bodies with the inertia of armatures, and forces that compensate their weight, since an armature has no weight.
+    """Bodies with the inertia of armatures, and forces against the weight of this inertia, since an armature has no
+    weight.
 
-    Raises Unsupported for an armature of the relative motion of two moving bodies.
+    Raises Unsupported for an armature between two moving bodies.
     """
     model, bodies, weights = planar.model, list(planar.bodies), []
     gravity = np.zeros(3) if is_off(model, "GRAVITY") else model.opt.gravity

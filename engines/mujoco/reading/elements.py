@@ -1,4 +1,4 @@
-"""The joints, driven hinges and equalities of a MuJoCo model as ideal joints."""
+"""Read the joints, driven hinges and equalities of a MuJoCo model as ideal joints."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from reference.couplings import Coupling, Term
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Slot, Weld
 
 Array = NDArray[np.float64]
-Ends = tuple[int, int, Array, Array]  # Two groups, and a point [m] of each in the world.
+Ends = tuple[int, int, Array, Array]  # Two groups, and two points [m] of the world.
 WeightedJoints = Sequence[tuple[int, float]]  # Joints of the model with their factors in a sum of coordinates.
 EQUALITY, TENDON = mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_TENDON
-# The smallest ratio of armature and inertia with which a hinge counts as driven. The acceleration of such a hinge is
-# smaller than that of a free one by this ratio, and a tenth of the accepted difference from the judge's accelerations.
+# Smallest ratio of armature to inertia at which a hinge counts as driven. The armature divides the accelerations of the
+# hinge by this ratio. They are then a tenth of the accepted difference from the judge's accelerations.
 DRIVING_RATIO = 1e7
-TORQUE_SCALE = 10  # the index of a weld's torquescale in eq_data
+TORQUE_SCALE = 10  # index of a weld's torquescale in eq_data
 
 
 def tree_joints(planar: PlanarModel) -> list[Joint]:
@@ -52,7 +52,7 @@ def _joints_with_parent(planar: PlanarModel, group: int) -> list[Joint]:
         turned = planar.turned(parent, group)
         return [Slot(label, *names, *line), Drive(planar.names.new(f"{label}, no turning"), *names, 0.0, turned)]
     anchor = data.xanchor[hinges[0]]
-    # The line of the slot is fixed in the parent if the slide comes before the hinge.
+    # If the slide comes before the hinge, the line of the slot is fixed in the parent.
     first, second = (parent, group) if slides[0] < hinges[0] else (group, parent)
     line = planar.in_body(first, anchor), planar.direction(first, axis), planar.in_body(second, anchor)
     return [Slot(label, planar.name(first), planar.name(second), *line)]
@@ -83,7 +83,7 @@ def drives(planar: PlanarModel) -> list[Drive]:
 
 
 def equalities(planar: PlanarModel) -> list[Joint]:
-    """The ideal joints for the equalities of the model, which close loops and couple coordinates."""
+    """The ideal joints of the model's equalities, which close loops and couple coordinates."""
     model, data = planar.model, planar.data
     flags = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     out: list[Joint] = []
@@ -155,7 +155,7 @@ def _term(planar: PlanarModel, joint: int, factor: float) -> Term:
         reason = "its hinge is between two slides, which is not read in a sum; give the slides a separate body"
         raise refuse(name_of(planar.model, JOINT, joint), reason)
     at = data.xanchor[hinges[0]] if hinges else planar.centre(group)
-    # With two slides, the coordinate of a slide changes along the normal of the other slide.
+    # With two slides, a slide's coordinate changes along the normal of the other slide.
     axes = np.array([planar.frame.in_plane(data.xaxis[slide]) for slide in slides])
     x, y = np.linalg.pinv(axes)[:, slides.index(joint)]
     along, size = planar.frame.both.T @ [x, y], float(np.hypot(x, y))
@@ -173,7 +173,7 @@ def terms_of(planar: PlanarModel, parts: WeightedJoints) -> tuple[tuple[Term, ..
 
 
 def angle_weights(planar: PlanarModel, parts: WeightedJoints) -> dict[int, float]:
-    """The factor of the angle of each body in a sum of hinge coordinates, without factors of zero."""
+    """The factors of the bodies' angles in a sum of hinge coordinates, without zeros."""
     weights: dict[int, float] = {}
     for joint, factor in parts:
         for group, sign in ((planar.group_of(joint), 1.0), (planar.parent(joint), -1.0)):
@@ -217,7 +217,7 @@ def _read_coupling(planar: PlanarModel, index: int, element: str) -> list[Joint]
 
 
 def _read_sum(planar: PlanarModel, index: int, element: str, parts: WeightedJoints, open_by: float) -> list[Joint]:
-    """The ideal joint of an equality that keeps a sum of joint coordinates constant. `open_by`: its gap [m or rad]."""
+    """The ideal joint of an equality that keeps a sum of coordinates constant; `open_by` is the gap [m or rad]."""
     if np.any(planar.model.eq_data[index][2:5]):
         raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
     slides = any(planar.model.jnt_type[joint] != HINGE for joint, _ in parts)
@@ -267,7 +267,7 @@ def _read_tendon(planar: PlanarModel, index: int, element: str) -> list[Joint]:
     return [Rod(planar.new_name(EQUALITY, index), *planar.between(*ends), length)]
 
 
-# The reader of each kind of equality, and the description of its ideal counterpart.
+# Readers of equalities, and descriptions of the ideal counterparts.
 EQUALITIES: dict[str, tuple[Callable[[PlanarModel, int, str], list[Joint]], str]] = {
     "connect": (_read_connect, "a pin"),
     "weld": (_read_weld, "a weld; a pin where its torquescale is zero"),
@@ -277,7 +277,7 @@ EQUALITIES: dict[str, tuple[Callable[[PlanarModel, int, str], list[Joint]], str]
     ),
     "tendon": (_read_tendon, "a rod between two sites; over joints, of one tendon or of two, a linear coupling"),
 }
-# The connections of a body with its parent, and their ideal counterparts.
+# Connections of a body with its parent, and descriptions of the ideal counterparts.
 TREE_CONNECTIONS = {
     "no joint": "one body with its parent",
     "hinge, slide, both": "a pin, a line and a fixed angle, a line",

@@ -1,4 +1,4 @@
-"""The planar force elements of MuJoCo's springs, dampers, actuators, tendons and applied forces."""
+"""Read MuJoCo's springs, dampers, actuators, tendons and applied forces as planar force elements."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from engines.reading import left_out, refuse
 from reference.forces import CoupledForce, Damper, Force, ForceElement, Spring, Torque, TorsionDamper, TorsionSpring
 
 ACTUATOR = mujoco.mjtObj.mjOBJ_ACTUATOR
-# The elements of a model that act as forces, and their ideal counterparts.
+# Elements of a model that act as forces, and descriptions of the ideal counterparts.
 FORCE_COUNTERPARTS = {
     "stiffness, springref and damping of a joint": "a spring and a damper",
     "tendon between two sites": "a spring and a damper",
@@ -75,7 +75,7 @@ def _along(
 ) -> list[ForceElement]:
     """A constant force, a spring and a damper along a sum of joint coordinates.
 
-    `stretch`: the change of the sum [m or rad] from its initial value to its value at rest of the spring.
+    `stretch` is the rest value of the sum minus its initial value [m or rad].
     """
     if min(stiffness, damping) < 0:
         raise refuse(element, NEGATIVE)
@@ -218,7 +218,7 @@ def _at_site(planar: PlanarModel, element: str, name: str, actuator: int, push: 
 def _on_body(
     planar: PlanarModel, group: int, at: Any, force: Any, torque: Any, force_name: str, torque_name: str
 ) -> list[ForceElement]:
-    """A constant force (3,) [N] on a body at a point of the world, and a constant torque (3,) [N m] on the body."""
+    """A constant force (3,) [N] at a point of the world and a constant torque (3,) [N m] on a body."""
     second, out, pull = planar.name(group), list[ForceElement](), planar.frame.in_plane(force)
     if second is not None and any(pull):
         out.append(Force(planar.names.new(force_name), second, planar.in_body(group, at), pull))
@@ -251,6 +251,6 @@ def turns(planar: PlanarModel, group: int) -> bool:
 
 
 def limited_servos(model: Any) -> Any:
-    """A mask (nu,) of actuators with a limited force that varies. `forces` applies the limit of a constant force."""
+    """Whether an actuator (nu,) has a variable, limited force; `forces` applies the limit of a constant force."""
     affine = model.actuator_biastype == int(mujoco.mjtBias.mjBIAS_AFFINE)
     return model.actuator_forcelimited.astype(bool) & affine & np.any(model.actuator_biasprm[:, 1:3], axis=1)

@@ -1,7 +1,7 @@
 """The plane in which the joints of a MuJoCo model move its bodies, and the bodies of the model in this plane.
 
-A body without joints is merged with its parent. Positions normal to the plane do not affect the motion. Products of
-inertia do not either: they only change the reactions normal to the plane, since joints keep the bodies in the plane.
+A body without joints is merged with its parent. Positions normal to the plane and products of inertia do not affect the
+motion, since joints keep the bodies in the plane.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ from engines.reading import MOST_BODIES, Names, Note, refuse
 from reference.joints import Body, Joint, Vector
 
 Array = NDArray[np.float64]
-PLANAR = 1e-9  # Smaller components are rounding, relative to a unit vector or an inertia.
-# The largest tilt [rad] of an axis that counts as normal to the plane. Rounding to six digits tilts an axis by 2e-6,
-# and 1.5708 for a right angle by 4e-6. Tilts add up along chains. The tilt of 1.57 for a right angle, 8e-4, is refused.
+PLANAR = 1e-9  # Largest rounding of a component, relative to a unit vector or an inertia.
+# Largest tilt [rad] of an axis that counts as normal to the plane. Rounding to six digits tilts an axis by 2e-6. An
+# angle of 1.5708 in place of a right angle tilts it by 4e-6. Tilts add up along chains. An angle of 1.57 tilts it by
+# 8e-4 and is refused.
 MAX_TILT = 1e-4
-MAX_ROUNDED_TILT = 1e-2  # rad, the largest tilt for which a message mentions rounding in the file
+MAX_ROUNDED_TILT = 1e-2  # largest tilt [rad] for which a message mentions rounding in the file
 
 BODY, JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 FREE, BALL, SLIDE, HINGE = (
@@ -35,11 +36,11 @@ FREE, BALL, SLIDE, HINGE = (
 class Frame:
     across: Array  # Along x.
     up: Array  # Along y.
-    normal: Array  # Angles are positive about it.
+    normal: Array  # Angles are positive about the normal.
 
     @cached_property
     def both(self) -> Array:
-        """The matrix (2, 3) that projects a vector of the world onto x and y of the plane."""
+        """The matrix (2, 3) from a vector of the world to x and y of the plane."""
         return np.array([self.across, self.up])
 
     def in_plane(self, vector: Any) -> tuple[float, float]:
@@ -48,7 +49,7 @@ class Frame:
 
 
 def name_of(model: Any, kind: Any, index: Any) -> str:
-    """The kind of an element with its name, or with its number if it has no name."""
+    """The kind of an element and its name, or its number if it has no name."""
     word = str(kind).rsplit("_", 1)[-1].lower()
     name = mujoco.mj_id2name(model, kind, int(index))
     return f"{word} {name!r}" if name else f"{word} {index}"
@@ -105,7 +106,7 @@ def _nearest_axis(normal: Array) -> Array:
 def flattened(model: Any, frame: Frame) -> tuple[Any, float]:
     """A copy of the model whose joints move exactly in the plane, and the largest tilt [rad] of the original joints.
 
-    The axes are corrected in the pose qpos0, so that the bodies keep their heights above the plane.
+    The axes are corrected at qpos0, so that the bodies keep their heights above the plane.
     """
     flat, data = copy.copy(model), mujoco.MjData(model)
     data.qpos[:] = model.qpos0
@@ -139,13 +140,13 @@ class Groups:
     """Groups of MuJoCo bodies that are fixed to each other. A group is a body of the mechanism."""
 
     of: Array  # The group of each MuJoCo body (nbody,), -1 for the ground.
-    roots: tuple[int, ...]  # The MuJoCo body of each group that has the joints.
-    centres: Array  # Centres of mass (groups, 3) [m] in the frames of the roots.
-    signs: Array  # 1 for a joint (njnt,) whose axis is along the normal, -1 for the opposite direction.
+    roots: tuple[int, ...]  # MuJoCo body with the group's joints, by group.
+    centres: Array  # Centres of mass (groups, 3) [m] in the frames of `roots`.
+    signs: Array  # 1 if the axis of a joint (njnt,) is along the normal, and -1 for the opposite direction.
 
 
 def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body, ...]]:
-    """The groups of MuJoCo's bodies, and the bodies of the mechanism in the state of `data`; raises Unsupported."""
+    """The groups of MuJoCo's bodies, and the mechanism's bodies in the state of `data`; raises Unsupported."""
     roots = [int(body) for body in np.flatnonzero(model.body_jntnum)]
     if not roots:
         raise refuse("the model", "nothing in it can move")
@@ -160,7 +161,7 @@ def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body
 
 
 def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle: float) -> Body:
-    """The body of the mechanism for a group. Its centre of mass is written to `groups`."""
+    """The mechanism's body for a group; the centre of mass is also written to `groups`."""
     root, parts = groups.roots[index], np.flatnonzero(groups.of == index)
     element, masses = name_of(model, BODY, root), model.body_mass[parts]
     if not masses.sum() > 0:
@@ -179,7 +180,7 @@ def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle
         raise refuse(element, "it is free, and the normal of the plane is no principal axis of its inertia")
     rotation = data.xmat[root].reshape(3, 3)
     groups.centres[index] = rotation.T @ (centre - data.xpos[root])
-    centre = data.xpos[root] + rotation @ groups.centres[index]  # rounded as in every later state
+    centre = data.xpos[root] + rotation @ groups.centres[index]  # the same rounding as in later states
     moving, turning = np.zeros((2, 3, model.nv))
     mujoco.mj_jac(model, data, moving, turning, centre, root)
     speed, rate = moving @ data.qvel, turning @ data.qvel
@@ -208,7 +209,7 @@ def angles_of(model: Any, frame: Frame, groups: Groups, qpos: Array) -> Array:
 
 
 def _half_angle(model: Any, frame: Frame, address: int, qpos: Array) -> tuple[Array, Array]:
-    """Sine and cosine (times,) of half the angle about the normal from qpos0 to the quaternion at an address.
+    """Sine and cosine (times,) of half the rotation from qpos0 to the quaternion at an address.
 
     Raises Unsupported for a rotation out of the plane.
     """
@@ -228,7 +229,7 @@ class PlanarModel:
     bodies: tuple[Body, ...]
     names: Names = field(default_factory=Names)
     notes: list[Note] = field(default_factory=list)
-    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)  # the ideal joints of each equality, by index
+    held: dict[int, tuple[Joint, ...]] = field(default_factory=dict)  # ideal joints by index of the equality
 
     def group(self, body: int) -> int:
         return int(self.groups.of[body])
@@ -237,7 +238,7 @@ class PlanarModel:
         return self.group(self.model.jnt_bodyid[joint])
 
     def parent(self, joint: int) -> int:
-        """The group relative to which a joint moves its own group."""
+        """The parent group of the group that a joint moves."""
         return self.group(self.model.body_parentid[self.model.jnt_bodyid[joint]])
 
     def name(self, group: int) -> str | None:
@@ -250,7 +251,7 @@ class PlanarModel:
         return self.angle(second) - self.angle(first)
 
     def in_body(self, group: int, point: Any) -> Vector:
-        """A point (3,) [m] of the world in the frame of a group or the ground."""
+        """The coordinates [m] of a point (3,) of the world in the frame of a group or the ground."""
         x, y = self.frame.in_plane(point)
         if group < 0:
             return x, y
@@ -260,7 +261,7 @@ class PlanarModel:
         return float(cosine * x + sine * y), float(cosine * y - sine * x)
 
     def between(self, first: int, second: int, at: Any, other: Any) -> tuple[str | None, str | None, Vector, Vector]:
-        """The names of two groups, and a point of the world for each in its frame."""
+        """The names of two groups, and the coordinates of two points of the world in the groups' frames."""
         return self.name(first), self.name(second), self.in_body(first, at), self.in_body(second, other)
 
     def direction(self, group: int, axis: Any) -> float:
@@ -273,7 +274,7 @@ class PlanarModel:
         return self.frame.both.T @ self.bodies[group].pose[:2]
 
     def joints_of(self, group: int, *kinds: int) -> list[int]:
-        """The joints between a group and its parent, of these kinds or by default of all kinds."""
+        """The joints of some `kinds` between a group and its parent, by default of all kinds."""
         root = self.groups.roots[group]
         first = int(self.model.body_jntadr[root])
         joints = range(first, first + int(self.model.body_jntnum[root]))

@@ -1,4 +1,4 @@
-"""Runs of a user's MuJoCo model with its own or other settings, and the limits and contacts in a motion."""
+"""Runs of a user's MuJoCo model with the user's or other settings, and limits and contacts in a motion."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def centres(planar: PlanarModel, data: Any) -> Array:
 
 
 def directions(planar: PlanarModel, data: Any) -> Array:
-    """The twists (bodies, 3, nv) for unit velocities of MuJoCo's coordinates."""
+    """The twists (bodies, 3, nv) due to unit velocities of MuJoCo's coordinates."""
     jac, out = np.zeros((2, 3, planar.model.nv)), np.zeros((len(planar.bodies), 3, planar.model.nv))
     for index, (root, centre) in enumerate(zip(planar.groups.roots, centres(planar, data), strict=True)):
         mujoco.mj_jac(planar.model, data, jac[0], jac[1], centre, root)
@@ -83,7 +83,7 @@ def limited_forces(model: Any) -> list[str]:
 
 
 def _at_limits(model: Any, data: Any) -> list[str]:
-    """The elements whose force is at its limit in the state of `data`, after mj_fwdPosition."""
+    """The elements whose force is at a limit in the state of `data`, after mj_fwdPosition."""
     unlimited = copy.copy(model)
     unlimited.actuator_forcelimited[limited_servos(model)] = 0
     unlimited.jnt_actfrclimited[:] = unlimited.tendon_actfrclimited[:] = 0
@@ -100,13 +100,13 @@ def _at_limits(model: Any, data: Any) -> list[str]:
 class OwnMuJoCo:
     """A compiled model and its initial state; see `engines.reading.OwnModel`."""
 
-    planar: PlanarModel  # a model with joints that move exactly in the plane
+    planar: PlanarModel  # model whose joints move exactly in the plane
     mechanism: Mechanism
-    users: Any  # The model that runs, with the joints of the user.
-    tilt: float = 0.0  # rad, the largest difference of the axes in these two models.
-    urdf: bool = False  # Whether the file is URDF without an element for MuJoCo, which the lines to copy then contain.
+    users: Any  # The user's model, which is run.
+    tilt: float = 0.0  # Largest angle [rad] between axes in these two models.
+    urdf: bool = False  # Whether the file is URDF without an element for MuJoCo.
     suspects: Mapping[str, str] = field(default_factory=dict)
-    classes: bool = False  # whether the file may have classes of defaults, which a new default does not change
+    classes: bool = False  # whether the file may have classes of defaults
 
     engine = "MuJoCo"
     assumed = ""
@@ -118,7 +118,7 @@ class OwnMuJoCo:
 
     @property
     def declares(self) -> bool:
-        """False with a rod, since the equality of a tendon has no velocity term, unlike an ideal row."""
+        """False with a rod, since an equality of a tendon lacks the velocity term."""
         return not any(isinstance(joint, Rod) for joint in self.mechanism.joints)
 
     @property
@@ -153,7 +153,7 @@ class OwnMuJoCo:
         model = copy.copy(self.planar.model)
         if element is not None:
             switch_off(model, element)
-        # With tolerance zero the error of the solver is rounding.
+        # With tolerance zero the solver's error is rounding.
         model.opt.tolerance, model.opt.iterations = 0.0, max(100, model.opt.iterations)
         data = self._consistent_start(model)
         with logged_warnings(data):
@@ -176,7 +176,7 @@ class OwnMuJoCo:
         return declared(self.planar, self.mechanism, columns, self._drift(), moved)
 
     def _drift(self) -> Array:
-        """The accelerations (3 bodies,) at t = 0 for zero accelerations of MuJoCo's coordinates."""
+        """The bodies' accelerations (3 bodies,) at t = 0 for zero accelerations of MuJoCo's coordinates."""
         data = self._consistent_start(self.planar.model)
         mujoco.mj_forward(self.planar.model, data)
         data.qacc[:] = 0.0
@@ -190,7 +190,7 @@ class OwnMuJoCo:
         for at, qpos, rates in zip(t, positions(self.planar, pose), twist, strict=True):
             data.qpos[:] = qpos
             mujoco.mj_fwdPosition(model, data)
-            events: list[tuple[str, str]] = []  # a description, and the kind of element to switch off
+            events: list[tuple[str, str]] = []  # descriptions, and kinds of elements to switch off
             for kind, index in zip(data.efc_type, data.efc_id, strict=True):
                 if kind in LIMIT_ROWS:
                     events.append((f"{name_of(model, LIMIT_ROWS[kind], index)} reaches its limit", "limit"))
@@ -253,7 +253,7 @@ class OwnMuJoCo:
             reset_at = log.reset_at
             is_valid = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
             if reset_at is not None:
-                is_valid &= t < reset_at - model.opt.timestep / 2  # half a step, since MuJoCo's clock is rounded
+                is_valid &= t < reset_at - model.opt.timestep / 2  # a margin, since MuJoCo's clock is rounded
             is_valid = np.logical_and.accumulate(is_valid)
             pose, twist, acceleration = self._read(model, qpos[is_valid], qvel[is_valid], len(t))
             warnings = (*log.messages, *release_warnings())
@@ -263,7 +263,7 @@ class OwnMuJoCo:
         return Trajectory(t, pose, twist, reaction, stepping, warnings, reset_at)
 
     def _read(self, model: Any, qpos: Array, qvel: Array, count: int) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (count, bodies, 3) of the given states; NaN after the last state."""
+        """Poses, twists and accelerations (count, bodies, 3) of the states; NaN after the last state."""
         pose, twist, acceleration = np.full((3, count, len(self.mechanism.bodies), 3), np.nan)
         data = self._own_start(model)
         if len(qpos):

@@ -1,4 +1,4 @@
-"""The regularisation of loops that MuJoCo declares for a user's model, and changes of settings in the model and file.
+"""MuJoCo's declared regularisation of loops in a user's model, and changes of settings in the model and file.
 
 A row obeys a + b v + k d r = -R f, where r is its gap and f its force. R is (1 - d) / d times a diagonal matrix for the
 inverse inertia. The impedance d grows with the gap. MuJoCo documents the law in "Computation: Constraint model" and
@@ -32,10 +32,10 @@ MIN_IMPEDANCE, MAX_IMPEDANCE = 1e-4, 0.9999  # mjMINIMP and mjMAXIMP
 
 @dataclass(frozen=True, eq=False)
 class _EqualityRows:
-    """The rows of an equality, and the rows of the mechanism that it enforces.
+    """The rows of an equality, and the rows of the mechanism that the equality enforces.
 
-    An entry of `blocks` is a slice of the equality's rows, a slice of `ideal`, and a matrix. The product of the matrix
-    and these rows of the mechanism gives these rows of the equality.
+    An entry of `blocks` has a slice of the equality's rows, a slice of `ideal`, and a matrix. The matrix times the
+    mechanism's rows in the slice gives the equality's rows.
     """
 
     equality: int
@@ -52,11 +52,11 @@ def declared(
 ) -> Callable[[Array, Array], RowRegularisation]:
     """The regularisation of the rows as a function of gaps (rows,) [m, rad] and a pose (bodies, 3).
 
-    `directions` (3 bodies, nv): the twists at t = 0 for unit velocities of MuJoCo's coordinates. They are needed to
-    compare MuJoCo's rows with the rows of the mechanism, since a multiple of a row has another compliance. `drift`
-    (3 bodies,): the accelerations at t = 0 for zero accelerations of the coordinates. An equality of a tendon gives
-    these accelerations, since it has no velocity term (up to 4.0.1). `moved(pose)`: a mujoco.MjData at a pose, after
-    mj_fwdPosition. `moved` is called only with the flag `diagexact`, since the diagonal then depends on the pose.
+    `directions` (3 bodies, nv) are the twists at t = 0 due to unit velocities of MuJoCo's coordinates. They show by
+    which factors MuJoCo's rows differ from the mechanism's rows. `drift` (3 bodies,) are the accelerations at t = 0 for
+    zero accelerations of the coordinates, which replace the velocity term that equalities of tendons lack (up to
+    4.0.1). `moved(pose)` is a mujoco.MjData at a pose, after mj_fwdPosition. It is needed only with the flag
+    `diagexact`, for which the diagonal depends on the pose.
     """
     begin = np.cumsum([0, *(joint.size for joint in mechanism.joints)])
     rows_of = {joint.name: list(range(at, at + joint.size)) for joint, at in zip(mechanism.joints, begin, strict=False)}
@@ -81,7 +81,7 @@ def declared(
             stiffness[rows.ideal], damping[rows.ideal] = rows.stiffness * d, rows.damping
             diagonal = _diagonal(data, rows.equality)
             for of_mujoco, of_ideal, multiples in rows.blocks:
-                # In MuJoCo's rows, which are multiples of ours, R f = a_ref - a.
+                # MuJoCo's rows are multiples of ours and satisfy R f = a_ref - a.
                 inverse = multiples.T @ (multiples / diagonal[of_mujoco, None])
                 block = np.ix_(rows.ideal[of_ideal], rows.ideal[of_ideal])
                 compliance[block] = (1 - d) / d * np.linalg.inv(inverse)
@@ -91,7 +91,7 @@ def declared(
 
 
 def _equality_rows(planar: PlanarModel, equality: int, ideal: list[int], ours: Array, theirs: Array) -> _EqualityRows:
-    """The rows of an equality. MuJoCo's rows for the point of a connect or a weld are along the axes of the world."""
+    """The rows of an equality; the rows for the point of a connect or a weld are along the world's axes."""
     rows, blocks, lengths = equality_rows(planar.data, equality), [], np.ones(len(ideal))
     holds_point = len(ideal) > 1
     if holds_point:
@@ -130,9 +130,9 @@ def impedance_of(solimp: Array, gap: float) -> float:
 
 FLAGGED_ELEMENTS = ("contact", "limit", "frictionloss", "equality", "actuation", "spring", "damper", "gravity")
 UNFLAGGED_ELEMENTS = ("armature", "fluid", "forcelimit", "sleep")
-TIED_STEPS = 5.0  # The time constant of stiff loops in steps, as in the method TUNED.
+TIED_STEPS = 5.0  # Time constant of stiff loops in steps, as in the method TUNED.
 DEFAULT_EQUALITY = ((0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0))  # MuJoCo's default solref and solimp.
-STEP_COUNT, FURTHER_STEP_COUNT = 6, 11  # How many steps are tried; each is half of the previous step.
+STEP_COUNT, FURTHER_STEP_COUNT = 6, 11  # Numbers of step sizes that are tried, each half of the previous one.
 
 
 def switch_off(model: Any, element: str) -> None:
@@ -160,10 +160,10 @@ def tied_values(dt: float) -> dict[str, str]:
 def changes(
     model: Any, soft: bool, smallest: float, urdf: bool = False, classes: bool = False, further: bool = False
 ) -> list[Change]:
-    """Changes to steps of at least `smallest` [s], with the model's own integrator and with RK4.
+    """Changes to steps of at least `smallest` [s], with the model's integrator and with RK4.
 
-    `soft`: whether the model has loops, which are also tried with a larger stiffness. `urdf` and `classes`: as in
-    `OwnMuJoCo`. `further`: whether to try even smaller steps.
+    `soft`: whether the model has loops, for which a larger stiffness is also tried. `urdf`, `classes`: see `OwnMuJoCo`.
+    `further`: whether to try even smaller steps.
     """
     own_step = float(model.opt.timestep)
     solref, solimp = DEFAULT_EQUALITY
@@ -190,7 +190,7 @@ def changes(
     return out
 
 
-Tag = tuple[tuple[str, ...], int, int]  # the path of an element, and the begin and end of its start tag
+Tag = tuple[tuple[str, ...], int, int]  # path of an element, and begin and end of its start tag
 
 
 def rewritten(source: bytes, change: Change) -> bytes:
@@ -235,7 +235,7 @@ def _tags(source: bytes) -> list[Tag]:
     parser.EndElementHandler = lambda name: path.pop()
     try:
         parser.Parse(source, True)
-    except expat.ExpatError as error:  # MuJoCo's own parser accepts more
+    except expat.ExpatError as error:  # MuJoCo's parser accepts more
         raise refuse("the file", f"it is not well-formed XML ({error}), so nothing can be written into it") from None
     return tags
 
