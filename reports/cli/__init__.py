@@ -1,1 +1,1 @@
-"""The command line: one file a command."""
+"""The command line. Every command has a file."""

@@ -20,7 +20,7 @@ from reports.site.lessons import take_like
 from reports.write.tables import number
 
 KINDS = ("svg", "gif", "mp4")
-MOST_SHOWN = 4  # methods in one picture: more cannot be distinguished
+MOST_SHOWN = 4  # More methods in one picture could not be distinguished.
 
 
 def animate(
@@ -57,7 +57,7 @@ def animate(
 
 
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
-    """The engines with these names. Raises BadInput for an unknown name and for too many names."""
+    """The methods with these names. Raises BadInput for an unknown name and for too many names."""
     if words is None:
         return [engine for engine in engines if engine.variant == "default"][:MOST_SHOWN]
     known = {method_name(engine): engine for engine in engines}
@@ -70,7 +70,7 @@ def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engin
 
 
 def _refuse_bad(path: Path, kind: str, force: bool) -> None:
-    """Raises BadInput or FileTrouble if the picture can't be made or written, before any engine runs."""
+    """Raise BadInput or FileTrouble if the picture can't be made or written. It is called before engines run."""
     refuse_existing([path], "--output", force)
     if kind == "mp4":
         ffmpeg()

@@ -18,11 +18,11 @@ from reports.pages.atlas.subjects import MAPS
 from reports.run import cluster
 from reports.run.running import run_into
 
-MAP_LIMIT = 600.0  # CPU seconds of one cell, far above the longest known one.
-STRIDE = 4  # Every fourth step is run first; steps between two equal outcomes are left out.
-SMALL = 16  # Points along a side; smaller maps are run completely.
+MAP_LIMIT = 600.0  # Limit of CPU seconds for one cell. All known cells need far less.
+STRIDE = 4  # Every fourth step is run first. Steps between two equal outcomes are left out.
+SMALL = 16  # Maps with fewer points along a side are run completely.
 VARIANTS_SHOWN = ("default", "tuned")
-ATLAS = "atlas"  # the folder in that of the results with the columns of the maps
+ATLAS = "atlas"  # Name of the folder with the columns of the maps, inside the folder of results.
 
 
 def atlas(
@@ -38,7 +38,7 @@ def atlas(
         bool, typer.Option("--publish", help="Write the file from which the published page is made, too.")
     ] = False,
 ) -> None:
-    """Map where methods fail, over the step and a parameter of the scene. It is no part of a full run."""
+    """Map where methods fail, over the step and a parameter of the scene. A full run does not include the maps."""
     known = {stability_map.name: stability_map for stability_map in MAPS}
     names = tuple(known) if scenes is None else listed("--scenes", [scenes], known)
     if publish:

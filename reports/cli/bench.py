@@ -1,4 +1,4 @@
-"""`crosscheck bench`: tables of the measurements of `reports.bench`."""
+"""`crosscheck bench` prints tables of the measurements in `reports.bench`."""
 
 from __future__ import annotations
 
@@ -42,12 +42,11 @@ def bench(
     site: Annotated[Path, typer.Option(help="`site`: a folder that `crosscheck site` wrote.")] = SITE,
     device: DeviceName = None,
 ) -> None:
-    """Time `run` against bare loops; asserts nothing.
+    """Compare the CPU times of `run` and of bare loops.
 
-    `bench suite [SCENES]`: CPU time of a grid by part, method and scene. `bench judge`: CPU time of the judge and of
-    exact motions. `bench worlds [COUNTS]`: steps per second and errors of 1, 64 and 4096 four-bars that engines step in
-    one program, on the device of `--device`. `bench answers`: whole commands in new processes. `bench site`: sizes and
-    times of the site.
+    `bench suite [SCENES]` measures the CPU time of a grid by part, method and scene. `bench judge` measures the judge
+    and exact motions. `bench worlds [COUNTS]` measures steps per second and errors of many four-bars in one program, on
+    the device of `--device`. `bench answers` measures whole commands. `bench site` measures the site.
     """
     match scene or []:
         case ["suite", *scenes]:
@@ -101,7 +100,7 @@ def _print_judge() -> None:
     scenes = dict.fromkeys(
         cell.scene for cell in choose_cells(choice.scenes, choice.engines, choice.known.pages, full=True)
     )
-    truths = measure_truths(scenes)  # first, since some motions are cached
+    truths = measure_truths(scenes)  # This comes first, since some motions are cached.
     total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
     _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
 

@@ -1,4 +1,4 @@
-"""`crosscheck check MODEL`: the error of a user's model with its own settings, and settings that meet a tolerance."""
+"""`crosscheck check MODEL` prints the error of a user's model, and settings that meet a tolerance."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from reports.run import supervisor, worker
 from reports.run.files import temporary_folder, write_whole
 from reports.run.running import worker_count
 
-MAX_WIDTH = 120  # Columns of the output.
+MAX_WIDTH = 120  # Largest number of columns of the output.
 OVERWRITE = "\r\x1b[K"  # Erases the current line of a terminal.
-# Modules that a check imports. The fork server imports them while this process reads the options and the model.
+# The fork server imports these modules while this process reads the options and the model.
 EARLY = ("reports.check.document", "reports.check.telling", "numba")
-# Names that `switch_off` of engines/mujoco/reading and engines/pymunk/reading accepts; --help imports neither.
+# Names that `switch_off` of the readers for MuJoCo and pymunk accepts. --help does not import the readers.
 SWITCHED_OFF = (
     "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "
     "spring, damper, gravity or equality"
 )
-# Outcome -> the sentence about a check without an answer.
+# Outcome -> a sentence on a check without a result.
 LOSSES = {
     "timed out": "{}; give a larger --limit if that was to be expected",
     "failed": "the check ended with an exception, {}; it comes from a function of the model, or is a defect of ours",
@@ -79,10 +79,10 @@ def check(
 ) -> None:
     """Check a model of your own against ideal joints: how wrong your settings are, why, and which are enough.
 
-    Exit status 1 if a tolerance that was asked for is missed.
+    The exit status is 1 if the model misses the given tolerance.
     """
     if as_schema:
-        from reports.check.document import schema  # which imports engines
+        from reports.check.document import schema  # This imports engines.
 
         return _say(json.dumps(schema(), indent=1))
     if not 0 < limit <= 1e6:
@@ -114,7 +114,7 @@ def check(
 
 
 def _refuse_missed(answers: Answers, is_folder: bool) -> None:
-    """Raises BadInput if --apply has failed, and Broken if a tolerance is missed."""
+    """Raise BadInput if --apply has failed. Raise Broken if a model misses the tolerance."""
     reports = [answer for _, answer in answers if isinstance(answer, CheckReport)]
     for report in reports:
         if report.trouble:
@@ -128,7 +128,7 @@ def _refuse_missed(answers: Answers, is_folder: bool) -> None:
 
 
 def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everything: bool, force: bool) -> None:
-    """Raises BadInput or FileTrouble for options that can't be met, before a model is run."""
+    """Raise BadInput or FileTrouble for invalid options. It is called before a model runs."""
     model = request.word
     if not model:
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")
@@ -142,7 +142,7 @@ def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everyth
             raise BadInput(f"{name} is {str(path)!r}, which is a folder; give a file")
         if name != "--apply" and path.resolve() in sources:
             raise BadInput(f"{name} is {str(path)!r}, which is the model; give another file")
-    if "--apply" in paths:  # reports replace older ones, like those of pytest
+    if "--apply" in paths:  # Reports may replace older files, as in pytest.
         refuse_existing([paths["--apply"]], "--apply", force)
     if len({path.resolve() for path in paths.values()}) < len(paths):
         raise BadInput(f"{' and '.join(paths)} name one file twice; give each a file of its own")
@@ -152,7 +152,7 @@ def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everyth
 
 
 def _models(model: str) -> list[str]:
-    """The model, or the models of a folder. Raises BadInput for a folder without models."""
+    """The path of the model, or the paths of all models in a folder. Raises BadInput for a folder without models."""
     if not Path(model).is_dir():
         return [model]
     paths = [str(path) for path in many.find_models(Path(model))]
@@ -162,7 +162,7 @@ def _models(model: str) -> list[str]:
 
 
 def _answers(requests: list[CheckRequest], limit: float) -> Answers:
-    """Run the checks in supervised processes, with progress on stderr. Raises WorkersLost."""
+    """Run the checks in supervised processes and print the progress on stderr. Raises WorkersLost."""
     answers: dict[str, CheckReport | Refused] = {}
     with temporary_folder() as aside:
         progress = _Progress(aside / "progress")
@@ -183,7 +183,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
 
 
 class _Progress:
-    """Prints progress: one line that is overwritten on a terminal, or a line for each stage into a file or a pipe."""
+    """Prints the progress. On a terminal the line is overwritten. A file or a pipe gets a line for each stage."""
 
     def __init__(self, notes: Path) -> None:
         self.notes, self._last, self._begin = notes, "", monotonic()
@@ -206,7 +206,7 @@ class _Progress:
 
 def _write(model: str, answers: Answers, files: Mapping[str, Path | None], seconds: float) -> None:
     """Write the files of --html, --markdown and --junit. Raises FileTrouble."""
-    from reports.check import rendering  # imported here, so that bad options are refused sooner
+    from reports.check import rendering  # Imported here, so that invalid options are refused sooner.
     from reports.write.tables import markdown as table
 
     texts, html, markdown, junit = dict[Path, str](), files["html"], files["markdown"], files["junit"]
@@ -230,7 +230,7 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
 
 
 def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> None:
-    """Print the answer for one model. Raises BadInput if it was refused."""
+    """Print the report or the JSON document of one model. Raises BadInput if the model was refused."""
     from reports.check import rendering
 
     if isinstance(answer, Refused):

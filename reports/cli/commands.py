@@ -1,4 +1,4 @@
-"""The table of commands. Only the module of the command that runs is imported, so that commands start quickly."""
+"""The table of commands. Commands start quickly, since only the module of the running command is imported."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import typer
 from reports.cli.streams import written
 from reports.model.ending import FINE, STATUSES, BadInput
 
-# Command -> (module and function in `reports.cli`, the first sentence of its help).
+# Command -> (module and function in `reports.cli`, first sentence of the help).
 COMMANDS = {
-    "list": ("show:list_command", "Scenes, engines and variants, and what is unsupported, with the reason."),
-    "run": ("run:run", "Run the cells that are not stored yet; what is done survives an interruption."),
+    "list": ("show:list_command", "List scenes, engines and variants, and unsupported combinations with the reason."),
+    "run": ("run:run", "Run the cells that are not stored yet. An interrupted run can be continued."),
     "show": ("show:show", "Print a scene's stored numbers: every run, order and plateau, and its experiments."),
-    "report": ("report:report", "Write pages, charts, errors.csv and timings.csv from what is stored."),
-    "bench": ("bench:bench", "Time `run` against bare loops; asserts nothing."),
+    "report": ("report:report", "Write pages, charts, errors.csv and timings.csv from the stored results."),
+    "bench": ("bench:bench", "Compare the CPU times of `run` and of bare loops."),
     "shapes": ("shapes:shapes", "Write the two shapes that generate a motion when the one rolls on the other."),
     "errata": ("errata:errata", "The chapter's printed slips: each formula's value as printed and as it must be."),
     "conform": ("conform:conform", "Check that an engine keeps the contract: signs, instants, orders, refusals."),
-    "search": ("search:search", "Search random mechanisms for faults; each finding is made small and written."),
+    "search": ("search:search", "Search random mechanisms for faults, and reduce and write each finding."),
     "atlas": ("atlas:atlas", "Map where methods fail: step against the parameter that breaks a scene."),
-    "versions": ("versions:versions", "Run scenes in released versions of an engine; each is installed once."),
-    "compare": ("compare:compare", "Print what changed in error, order, outcome and cost from A to B."),
+    "versions": ("versions:versions", "Run scenes in released versions of an engine."),
+    "compare": ("compare:compare", "Print changes of errors, orders, outcomes and costs from A to B."),
     "animate": ("animate:animate", "Write a picture that moves: the exact motion, and what engines make of it."),
     "site": ("site:site", "Write the results as a static site: lessons, tables, charts, engines in the page."),
     "check": ("check:check", "Check a model of your own against ideal joints: how wrong, why, what is enough."),
@@ -35,7 +35,7 @@ LOOK: Any = {"add_completion": False, "pretty_exceptions_enable": False, "rich_m
 
 
 def command(name: str) -> Any:
-    """The parser of a command and its options."""
+    """The parser for the options of a command."""
     module, _, function = COMMANDS[name][0].partition(":")
     app = typer.Typer(**LOOK)
     app.command(name)(getattr(import_module(f"reports.cli.{module}"), function))
@@ -52,11 +52,11 @@ def program() -> Any:
 
 
 def invoke(arguments: Sequence[str]) -> int:
-    """Run a command and return its exit status. Raises the exceptions of the command and typer's usage errors."""
+    """Run a command and return its exit status. Exceptions of the command and of typer are raised."""
     words = list(arguments) or ["--help"]
     status = FINE
     try:
-        # typer's own `main` is not called, since it changes the exit status of a closed pipe and of Ctrl-C.
+        # The `main` of typer is not called, since it changes the exit status after Ctrl-C and for a closed pipe.
         with written():  # For --help.
             if words[0] in COMMANDS:
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
@@ -73,7 +73,7 @@ def invoke(arguments: Sequence[str]) -> int:
 
 
 def _refuse_repeated(parameters: Sequence[Any]) -> None:
-    """Raises BadInput for a repeated option that takes one value, of which the parser would use only the last."""
+    """Raise BadInput if an option for one value is repeated. The parser would use only the last value."""
     for parameter in parameters:
         if parameter.param_type_name == "option" and not parameter.multiple and parameters.count(parameter) > 1:
             words = "/".join((*parameter.opts, *parameter.secondary_opts))

@@ -1,4 +1,4 @@
-"""`crosscheck compare`: the differences between two builds of an engine; status 1 if the second is worse."""
+"""`crosscheck compare` prints the differences between two builds of an engine."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def compare(
     as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
-    """Print what changed in error, order, outcome and cost from A to B; status 1 if an error became 3 times larger."""
+    """Print changes of errors, orders, outcomes and costs from A to B. Status 1 if an error became 3 times larger."""
     if cost is not None and not 0 < cost < math.inf:
         raise BadInput(f"--cost is {cost:g}; give a number above 0, such as 1.5")
     chosen = named_scenes(scenes) if scenes else None
@@ -121,7 +121,7 @@ def _cells(difference: Difference) -> list[str | float]:
 
 
 def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
-    """For both sides: the reason of a changed outcome -> the number of cells with it."""
+    """For each of two builds: reason of a changed outcome -> number of cells with this reason."""
 
     def reason(row: Measurement) -> str:
         sentence = " ".join(row.engine_sentence.split())[:LONGEST_REASON]

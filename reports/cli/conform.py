@@ -1,7 +1,7 @@
-"""`crosscheck conform`: checks of the contract of `engines`, with a line for each check.
+"""`crosscheck conform` checks whether an engine keeps the contract of `engines`, and prints a line for each check.
 
-Checks run in supervised processes, so that a check that crashes or hangs is reported too. A worker gets the name of the
-engine and loads it, since a checked engine may not be picklable; this is one of the checks.
+Checks run in supervised processes, so a check that crashes or hangs is reported too. A worker loads the engine by its
+name, since the engine may not be picklable.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from reports.run.files import temporary_folder
 from reports.run.running import TIME_LIMIT
 from reports.run.supervisor import supervise
 
-MODELS = 20  # models that a check may build, about one of each mechanism
+MODELS = 20  # Largest number of models that a check may build, about one for each mechanism.
 Answers = Sequence[tuple[ConformanceCase, ConformanceResult]]
 
 
@@ -38,7 +38,7 @@ def conform(
     as_json: AsJson = False,
     as_markdown: AsMarkdown = False,
 ) -> None:
-    """Check that an engine keeps the contract: signs, instants, orders, refusals, and any description alike."""
+    """Check that an engine keeps the contract: signs, instants, orders, refusals, and equivalent descriptions."""
     if sentence := mislabelled():
         raise BadInput(sentence)
     with telling(150, as_json, as_markdown) as screen:
@@ -48,7 +48,7 @@ def conform(
             screen.say(name)
             lines = []
             for status, line in verdicts(results):
-                screen.say(f"  {status:<14} {line}")  # at once, since some checks take seconds
+                screen.say(f"  {status:<14} {line}")  # The line is printed immediately, since some checks take seconds.
                 lines.append((status, line))
             count = sum(status == "fails" for status, _ in lines)
             summary = "every check holds" if not count else f"{count} checks fail"
@@ -62,7 +62,7 @@ def conform(
 
 
 def verdicts(results: Iterator[tuple[ConformanceCase, ConformanceResult]]) -> Iterator[tuple[Status, str]]:
-    """(status, line) of each check, and of each distinct reason why a check did not apply."""
+    """Yield (status, line) for each check, and for each distinct reason why a check did not apply."""
     printed: set[str] = set()
     for check, group in groupby(results, key=lambda pair: pair[0].check):
         answers = list(group)
@@ -85,14 +85,14 @@ def _with_status(answers: Answers, status: str) -> list[tuple[ConformanceCase, C
 
 
 def _places(answers: Answers) -> str:
-    """The mechanisms with their joints, as the beginning of a sentence."""
+    """The beginning of a sentence, with the mechanisms and their joints."""
     names = [f"{case.world.name} ({', '.join(case.world.kinds)})" for case, _ in answers if case.world is not None]
     return f"in {'; '.join(names)}: " if names else ""
 
 
 @dataclass(frozen=True)
 class Named:
-    """An engine's name, or a reference relative to `folder`, and a variant."""
+    """An engine's name or a reference, and a variant. The path of a reference is relative to `folder`."""
 
     engine: str
     variant: str | None
@@ -103,28 +103,28 @@ class Named:
         return Named(engine, variant, os.getcwd())
 
     def engines(self) -> tuple[Engine, ...]:
-        """Raises BadInput if no engine has this name."""
+        """The engines with this name. Raises BadInput if there are none."""
         return engines_named(self.engine, self.variant, (*ENGINES, *INSTALLED), Path(self.folder))
 
 
 @dataclass(frozen=True)
 class Question:
-    """A check of one engine, to be run by a worker."""
+    """A check of one engine that a worker runs."""
 
     named: Named
-    index: int  # Of the engine in `named.engines()`.
+    index: int  # Index of the engine in `named.engines()`.
     check: str  # Name of the check.
-    notes: str  # A folder; a file with the name of the check has the number of the current mechanism.
+    notes: str  # A folder. Its file with the name of the check contains the number of the current mechanism.
 
 
 @cache
 def _cases(named: Named, index: int) -> tuple[ConformanceCase, ...]:
-    """The cases of an engine; the cache makes its checks share their runs."""
+    """The cases of an engine. They are cached, so that the checks of an engine share runs."""
     return tuple(cases(named.engines()[index]))
 
 
 def ask(question: Question) -> tuple[ConformanceResult, ...]:
-    """In a worker: the results of the check in each of its mechanisms."""
+    """The results of a check in each mechanism. A worker calls this function."""
     results = []
     for number, case in enumerate(_of_check(_cases(question.named, question.index), question.check)):
         Path(question.notes, question.check).write_text(str(number), encoding="utf-8")
@@ -135,9 +135,9 @@ def ask(question: Question) -> tuple[ConformanceResult, ...]:
 def asked(
     named: Named, limit: float = TIME_LIMIT
 ) -> Iterator[tuple[Engine, Iterator[tuple[ConformanceCase, ConformanceResult]]]]:
-    """Yield each named engine with the results of its checks in order. Raises BadInput and WorkersLost (`supervise`).
+    """Yield each named engine with the results of its checks in order. Raises BadInput and WorkersLost.
 
-    `limit`: CPU seconds of a check without building models. One worker runs all checks, so that they share their runs.
+    limit: CPU seconds of a check without the time to build models. One worker runs all checks, which share their runs.
     """
     for number, engine in enumerate(named.engines()):
         yield engine, _answers(named, number, engine, limit + MODELS * engine.build_time)
@@ -154,7 +154,7 @@ def _answers(
         for question, results, earlier in supervise(ask, questions, limit, workers=1):
             members = _of_check(every, question.check)
             if isinstance(results, Loss):
-                note = Path(notes, question.check)  # the case that was running
+                note = Path(notes, question.check)  # The case that was running.
                 case = members[int(note.read_text(encoding="utf-8"))] if note.is_file() else members[0]
                 start = "It" if results.outcome == Outcome.TIMED_OUT else "Its process was lost:"
                 answers[question.check] = [_failed(case, f"{start} {results.sentence}")]
@@ -163,7 +163,7 @@ def _answers(
                 answers[question.check] = [_failed(members[0], sentence)]
             else:
                 answers[question.check] = list(zip(members, results, strict=True))
-            while names and names[0] in answers:  # the answer of a check that is tried again comes after later ones
+            while names and names[0] in answers:  # A repeated check answers later than the checks after it.
                 yield from answers[names.pop(0)]
 
 

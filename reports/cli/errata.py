@@ -1,4 +1,4 @@
-"""`crosscheck errata`: a table of the misprints in the chapter, each with its three values and the verdict."""
+"""`crosscheck errata` prints a table of the misprints in the chapter, with three values and a verdict."""
 
 from __future__ import annotations
 

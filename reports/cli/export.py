@@ -1,4 +1,4 @@
-"""`crosscheck export SCENE` writes a scene as a file for an engine; `crosscheck view SCENE` shows it."""
+"""`crosscheck export SCENE` writes a scene as a file for an engine. `crosscheck view SCENE` shows the scene."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from reports.site.animated import animation, shown
 from reports.site.lessons import take_like
 
 INSTANTS = 10  # Number of instants of the exact motion in the comments.
-WRITER_MEMBERS = ("suffix", "write", "commented")  # That every writer must have.
+WRITER_MEMBERS = ("suffix", "write", "commented")  # Every writer must have these members.
 
 SceneName = Annotated[str, typer.Argument(help=f"A scene's name, or {REFERENCES}.")]
 Out = Annotated[Path | None, typer.Option("--out", help="The file; standard output unless given.")]
@@ -74,7 +74,7 @@ def view(
 
 
 def writers() -> dict[str, Any]:
-    """The writers by the values of --to, from the entry point group `crosscheck.writers`."""
+    """Value of --to -> writer, from the entry point group `crosscheck.writers`."""
     lacking = f"it lacks {', '.join(WRITER_MEMBERS)}"
     return _registered("writer", lambda value: "" if all(hasattr(value, name) for name in WRITER_MEMBERS) else lacking)
 
@@ -84,7 +84,7 @@ def _registered(name: str, trouble: Callable[[Any], str]) -> dict[str, Any]:
 
 
 def truth_lines(scene: Scene) -> list[str]:
-    """Comment lines with the exact poses of all bodies at INSTANTS instants."""
+    """Lines of comments with the exact poses of all bodies at INSTANTS instants."""
     mechanism = scene.mechanism()
     times = np.linspace(0.0, scene.duration, INSTANTS)
     x, y = mechanism.gravity
@@ -108,5 +108,5 @@ def _write(path: Path, text: str, force: bool) -> None:
         return
     refuse_existing([path], "--out", force)
     write_whole({path: text}, "give another --out")
-    if not is_stream(path):  # the stream may be the standard output, which must contain only the text
+    if not is_stream(path):  # Standard output must contain only the text.
         print(visible(f"written: {path}"))

@@ -1,6 +1,6 @@
-"""Ctrl-C, SIGTERM and SIGHUP end the program without a traceback and without temporary folders.
+"""Handlers for Ctrl-C, SIGTERM and SIGHUP. They end the program without a traceback and remove temporary folders.
 
-The exit status is then 128 plus the number of the signal, for example 130 after Ctrl-C.
+The exit status is 128 plus the number of the signal, for example 130 after Ctrl-C.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP"
 
 
 class Interrupted(KeyboardInterrupt):
-    """The program is interrupted by the signal with this number."""
+    """A signal with this number interrupts the program."""
 
     def __init__(self, number: int = signal.SIGINT) -> None:
         super().__init__()
@@ -27,7 +27,7 @@ class Interrupted(KeyboardInterrupt):
 
 @contextmanager
 def _handled(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
-    """A context in which the signals call the handler. Signals that are ignored, as by nohup, stay ignored."""
+    """A context in which the signals call the handler. Ignored signals stay ignored, for example after nohup."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -44,22 +44,21 @@ def _handled(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
 
 
 def _end(number: int, frame: FrameType | None) -> None:
-    # Not by an exception: one that is raised while a compiled module is imported is replaced by another, or is lost.
-    # A module that is not imported yet, or only in part, has nothing to clean up.
+    # No exception is raised here, since it could be lost during the import of a compiled module. A module that is not
+    # completely imported has nothing to clean up.
     for module, name in (("reports.run.worker", "stop_all"), ("reports.run.files", "remove_all")):
         getattr(sys.modules.get(module), name, lambda: None)()
     os._exit(128 + number)
 
 
 def ending_at_once() -> Any:
-    """A context in which a signal ends the process immediately, for work that changes no files."""
+    """A context in which a signal ends the process immediately. It is for work that changes no files."""
     return _handled(_end)
 
 
 @contextmanager
 def delayed_signals() -> Iterator[Callable[[], None]]:
-    """A context that delays a signal until its function `check` is called or the context ends; then Interrupted is
-    raised.
+    """A context that yields a function `check`. After a signal, `check` and the end of the context raise Interrupted.
 
     So work stops only where it can be continued later. A second signal raises Interrupted immediately.
     """
@@ -82,6 +81,6 @@ def delayed_signals() -> Iterator[Callable[[], None]]:
 
 
 def from_now_on_ignored() -> None:
-    """Ignore Ctrl-C while the interpreter shuts down, after all output has been written."""
+    """Ignore Ctrl-C from now on, since all output has been written and the interpreter shuts down."""
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,4 +1,4 @@
-"""Scenes, engines and pages that a command can use: registered ones, and those of its references or its store."""
+"""Scenes, engines and pages that a command can use. They are registered, or given by references or by the store."""
 
 from __future__ import annotations
 
@@ -25,29 +25,29 @@ from reports.model.page import Page
 from reports.run import supervisor
 from reports.run.running import TIME_LIMIT
 
-SLEEPING = 120.0  # s of wall time for a third party's code that does not use its CPU time
+SLEEPING = 120.0  # Wall time [s] after which code of a third party is ended even if it uses no CPU time.
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A scene or engine that is not registered, as text that can be stored and loaded again."""
+    """A reference to a scene or engine that is not registered. It can be stored as text."""
 
-    kind: str  # "scene" or "engine"
+    kind: str  # "scene" or "engine".
     word: str  # A reference (`engines.loading`), or the name of a registered scene.
-    folder: str  # The base of a relative path.
-    settings: tuple[tuple[str, str], ...] = ()  # (name, value) of the changed numbers of the scene, as typed.
+    folder: str  # Folder to which a path in the reference is relative.
+    settings: tuple[tuple[str, str], ...] = ()  # (name, value) of changed parameters of the scene, as the user typed.
 
     def text(self) -> str:
         return json.dumps([self.kind, self.word, self.folder, self.settings])
 
     @classmethod
     def of_text(cls, text: str) -> Reference:
-        """Raises ValueError and TypeError for another text."""
+        """Parse the output of `text`. Raises ValueError and TypeError for any other text."""
         kind, word, folder, settings = json.loads(text)
         return cls(str(kind), str(word), str(folder), tuple((str(name), str(value)) for name, value in settings))
 
     def values(self) -> tuple[Any, ...]:
-        """The scenes or engines. Raises ValueError, a sentence."""
+        """The scenes or engines of the reference. Raises ValueError."""
         if self.kind == "engine":
             return registry.load(self.word, Path(self.folder))
         if is_reference(self.word):
@@ -61,15 +61,15 @@ class Reference:
 
 @dataclass(frozen=True)
 class Registry:
-    """Scenes and engines that a command can use, and their pages."""
+    """The scenes and engines that a command can use, and their pages."""
 
     scenes: tuple[Scene, ...]
     engines: tuple[Engine, ...]
     pages: tuple[Page, ...]
-    references: tuple[Reference, ...] = ()  # those that added scenes or engines
+    references: tuple[Reference, ...] = ()  # References that have added scenes or engines.
 
     def add(self, reference: Reference) -> tuple[Registry, tuple[Any, ...]]:
-        """(the registry with the scenes or engines of the reference, these scenes or engines). Raises ValueError."""
+        """(registry with the added scenes or engines, the added scenes or engines). Raises ValueError."""
         values = reference.values()
         if reference.kind == "engine":
             new = _new(values, self.engines, method_name, reference)
@@ -87,7 +87,7 @@ class Registry:
 def _new(
     values: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], reference: Reference
 ) -> tuple[Any, ...]:
-    """The values whose name is new. Raises ValueError if a different value has the same name."""
+    """The values with a new name. Raises ValueError if a known value has the same name and is different."""
     by_name = {name(value): value for value in known}
     new = []
     for value in values:
@@ -101,20 +101,20 @@ def _new(
 
 
 def registered() -> Registry:
-    """The registered scenes, engines and pages; a line on stderr reports each invalid entry point."""
+    """The registered scenes, engines and pages. Invalid entry points are reported on stderr."""
     for line in catalogue.TROUBLES:
         said(line)
     return Registry(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
 def with_stored(known: Registry, texts: Iterable[str], motion: bool = False) -> Registry:
-    """The registry with the references of a store; a line on stderr reports each that can't be loaded.
+    """The registry with the references of a store. References that can't be loaded are reported on stderr.
 
     motion: whether the command computes the motion of scenes.
     """
     references = []
     for text in texts:
-        with suppress(ValueError, TypeError):  # a text of another version
+        with suppress(ValueError, TypeError):  # Another version of this suite wrote the text.
             references.append(Reference.of_text(text))
     bad = refused(references, motion)
     for reference in references:
@@ -129,7 +129,7 @@ def with_stored(known: Registry, texts: Iterable[str], motion: bool = False) -> 
 
 @dataclass(frozen=True)
 class Choice:
-    """The scenes and engines that a command line selects, and the registry with its references."""
+    """The scenes and engines that a command line selects, and the registry with the references it contains."""
 
     known: Registry
     scenes: tuple[Scene, ...]
@@ -146,8 +146,8 @@ def choose(
 ) -> Choice:
     """Select scenes and engines, all of them by default. Raises BadInput.
 
-    words: names of scenes or pages, or references. settings: NAME=VALUE for numbers of these scenes. known: the
-    registered scenes and engines if None. motion: whether the command computes the motion of scenes.
+    words: names of scenes or pages, or references. settings: NAME=VALUE for parameters of these scenes. known: a
+    registry, by default the registered scenes and engines. motion: whether the command computes the motion of scenes.
     """
     known = known or registered()
     folder, values = str(Path.cwd()), _settings(settings)
@@ -177,7 +177,7 @@ def choose(
 
 
 def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Registry, Scene]:
-    """(registry, scene) for a command that computes the motion of one scene. Raises BadInput."""
+    """(registry, scene) of a command that computes the motion of one scene. Raises BadInput."""
     choice = choose([word], settings=settings, motion=True)
     if len(choice.scenes) != 1:
         names = ", ".join(scene.name for scene in choice.scenes)
@@ -188,7 +188,7 @@ def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Registry, Scene]
 def engines_named(
     word: str | None, variant: str | None, known: Sequence[Engine], folder: Path | None = None
 ) -> tuple[Engine, ...]:
-    """The engines with this variant, from a reference or by name among `known`. Raises BadInput."""
+    """The engines with a name among `known`, or of a reference, with this variant. Raises BadInput."""
     if word is None or not is_reference(word):
         return choose_engines(word, variant, known)
     try:
@@ -198,7 +198,7 @@ def engines_named(
 
 
 def _scene_names(known: Registry, word: str) -> list[str]:
-    """The scenes of a page's name; the word itself if it is a reference or a scene's name. Raises BadInput."""
+    """The names of a page's scenes. A scene's name or a reference is returned unchanged. Raises BadInput."""
     if is_reference(word) or any(word == scene.name for scene in catalogue.SCENES):
         return [word]
     for page in known.pages:
@@ -208,7 +208,7 @@ def _scene_names(known: Registry, word: str) -> list[str]:
 
 
 def _settings(words: Sequence[str]) -> dict[str, str]:
-    """Name -> value, parsed from NAME=VALUE. Raises BadInput."""
+    """Parse NAME=VALUE into a mapping from name to value. Raises BadInput."""
     out: dict[str, str] = {}
     for word in words:
         name, _, value = (part.strip() for part in word.partition("="))
@@ -222,15 +222,15 @@ def _settings(words: Sequence[str]) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class ReferenceTrial:
-    """Loads a reference in a worker and makes the same calls as a command."""
+    """A job that loads a reference in a worker and makes the same calls as a command."""
 
-    motion: bool  # whether it also computes the motion of a scene
+    motion: bool  # Whether the motion of a scene is computed too.
 
     def __call__(self, reference: Reference) -> str:
-        """The reason why it cannot be used; empty if it can."""
+        """The reason why the reference can't be used. Empty if it can be used."""
         try:
             for value in reference.values():
-                # Commands need a value that is hashable, equal to itself, and printable.
+                # A command needs a hashable and printable value that is equal to itself.
                 if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
                     raise ValueError("it is not equal to itself")
                 is_scene = isinstance(value, Scene)
@@ -238,10 +238,10 @@ class ReferenceTrial:
                     value.mechanism()
                 for scene in (value,) if is_scene else catalogue.SCENES:
                     for engine in registry.VARIANTS if is_scene else (value,):
-                        with suppress(BadInput):  # reported where the cost is needed
+                        with suppress(BadInput):  # This error is reported when the cost is needed.
                             estimated_cost(Cell(scene, engine, 1))
                 if is_scene and self.motion:
-                    with suppress(ValueError):  # a page reports that the exact motion is refused
+                    with suppress(ValueError):  # The page reports this error.
                         value.motion(np.linspace(0.0, value.duration, value.samples + 1))
         except ValueError as reason:
             return str(reason)
@@ -249,11 +249,11 @@ class ReferenceTrial:
 
 
 def refused(references: Sequence[Reference], motion: bool = False) -> dict[Reference, str]:
-    """Reference -> the reason why it can't be used, for those that can't. Raises WorkersLost.
+    """Reference that can't be used -> the reason. Raises WorkersLost.
 
-    A worker loads them first, since code of a third party may end its process.
+    A worker loads the references first, since code of a third party may end the process.
     """
-    if not references or multiprocessing.parent_process() is not None:  # this is a worker
+    if not references or multiprocessing.parent_process() is not None:  # This process is a worker.
         return {}
     sentences = {}
     for reference, result, _ in supervisor.supervise(

@@ -14,10 +14,10 @@ from engines.device import DEVICE, DEVICES
 from reports.model.ending import BadInput, FileTrouble, nearest
 from reports.run.files import is_stream
 
-FOLDER = Path("crosscheck-results")  # in the current folder, so that only --publish changes published results
+FOLDER = Path("crosscheck-results")  # Relative to the current folder. Only --publish changes published results.
 STORE = "cells.sqlite"
-STDOUT = Path("-")  # Stands for the standard output.
-SEARCH = "search"  # The folder in FOLDER with the results of random mechanisms.
+STDOUT = Path("-")  # This path means standard output.
+SEARCH = "search"  # Name of the folder in FOLDER with the results of random mechanisms.
 SITE = Path("crosscheck-site")
 REFERENCES = "package.module:NAME, or path/to/file.py"
 
@@ -65,9 +65,9 @@ AsMarkdown = Annotated[bool, typer.Option("--markdown", help="Markdown, as for a
 
 
 def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
-    """Raises FileTrouble for an existing file or link, unless `force`.
+    """Raise FileTrouble if a file or link exists, unless `force` is true.
 
-    A device or a pipe is accepted, since it is written to and not replaced.
+    Devices and pipes are accepted, since writing does not replace them.
     """
     for path in paths:
         if not force and (path.is_symlink() or path.exists()) and not is_stream(path):
@@ -75,7 +75,7 @@ def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
 
 
 def listed(option: str, words: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
-    """The names in `words`, which may be separated by commas; a name may itself contain a comma. Raises BadInput."""
+    """The names in `words`. Commas may separate names, and a name may contain a comma. Raises BadInput."""
     names = tuple(known)
     found = [name.strip() for word in words for name in ([word] if word in names else word.split(","))]
     out = tuple(dict.fromkeys(filter(None, found)))
@@ -88,12 +88,12 @@ def listed(option: str, words: Iterable[str], known: Iterable[str]) -> tuple[str
 
 
 def refuse_file(results: Path) -> None:
-    """Raises BadInput if the folder of results or one of its parents is a file."""
+    """Raise BadInput if the folder of results or one of its parents is a file."""
     for path in (results, *results.parents):
         if path.is_file():
             raise BadInput(f"--results is {str(results)!r}, and {path} is a file; give a folder")
 
 
 def with_folder(command: str, results: Path) -> str:
-    """A command with the --results option that this folder needs."""
+    """The command with the option --results for this folder, if it is not the default."""
     return command if results == FOLDER else f"{command} --results {shlex.quote(str(results))}"

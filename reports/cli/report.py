@@ -1,6 +1,6 @@
-"""`crosscheck report`: writes pages and charts of the stored results.
+"""`crosscheck report` writes pages and charts of the stored results.
 
-Drawing takes most of the time, so that workers render the pages if there are many rows.
+If there are many rows, workers render the pages, since drawing takes most of the time.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ from reports.write.templates import without_dead_links
 
 CHECKOUT = Path(__file__).parents[2]
 SEARCHED = ("search.md", "search_errors.svg")
-MANY = 1000  # Rows; with fewer rows, starting workers takes longer than rendering.
-PAGE_LIMIT = 600.0  # CPU seconds of one page.
+MANY = 1000  # With fewer rows, starting workers would take longer than rendering.
+PAGE_LIMIT = 600.0  # Limit of CPU seconds for one page.
 Materials = Mapping[Page, Material]
 
 
@@ -54,7 +54,7 @@ def report(
         bool, typer.Option("--publish", help="Write to the checkout's reports/results and README.md instead.")
     ] = False,
 ) -> None:
-    """Write pages, charts, errors.csv and timings.csv from what is stored."""
+    """Write pages, charts, errors.csv and timings.csv from the stored results."""
     for sentence in write_report(results, publish).sentences:
         Terminal(140).say(sentence)
 
@@ -82,7 +82,7 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
         write_files({folder / name: text for name, text in searched.items()})
         line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
         return WrittenReport(folder, tuple(searched), (line,))
-    if publish:  # the published pages of searches remain if no searches are stored
+    if publish:  # If no searches are stored, their published pages remain.
         paths = {name: folder / name for name in SEARCHED if (folder / name).is_file()}
         searched = searched or {name: path.read_text(encoding="utf-8") for name, path in paths.items()}
     material, references, left = stored_material(results, publish)
@@ -106,20 +106,20 @@ def material_of(page: Page, store: Store) -> Material:
 
 
 def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str, ...], str]:
-    """(the stored material of each page, the stored references, a sentence on missing cells or "").
+    """(material of each page, stored references, a sentence on missing cells or "").
 
-    A published report has the registered pages; another one also has pages of the stored references.
+    A published report has only registered pages. Other reports also have pages for the stored references.
     """
     with Store.read(results / STORE) as store:
         references = () if publish else tuple(store.load_references())
         pages = with_stored(registered(), references, motion=True).pages
-        # A borrowed cell is counted on the page that runs it.
+        # A borrowed cell counts as a cell of the page that runs it.
         items = [(*selection.page_cells(page), *selection.page_tasks(page)) for page in catalogue.PAGES]
         whole = tuple(dict.fromkeys(item for members in items for item in members))
         left = len(missing(whole, store))
         material = {page: material_of(page, store) for page in pages}
     names = {page.name for page in catalogue.PAGES}
-    # Pages without stored results are left out: they were not run, or their sources have changed since.
+    # Pages without stored results are left out. They were not run, or the sources have changed since.
     material = {
         page: stored
         for page, stored in material.items()
@@ -130,10 +130,10 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
 
 
 def publishable(material: Materials, left: str) -> Materials:
-    """The material, with the published digits of unchanged rows.
+    """The material in which unchanged rows have the published digits.
 
-    Raises BadInput if cells are missing, if rows contradict a claim of a page, or if an engine of a published row is
-    not installed, since its rows would be lost.
+    Raises BadInput if cells are missing, if rows contradict a claim of a page, or if an engine with published rows is
+    not installed.
     """
     before = read_published(published())
     if absent := [registry.ABSENT[engine] for engine in before.engines if engine in registry.ABSENT]:
@@ -149,7 +149,7 @@ def publishable(material: Materials, left: str) -> Materials:
 def rendered(
     folder: Path, material: Materials, references: tuple[str, ...], searched: Mapping[str, str], publish: bool
 ) -> dict[str, str]:
-    """Name -> text of the files of a report in this folder, without the file of digests."""
+    """Name -> text of a file of the report. The file of digests is not included."""
     command = "make publish" if publish else "crosscheck report"
     many = sum(len(stored.rows) for stored in material.values()) > MANY
     pages = drawn(material, references, command, published()) if many else {}
@@ -159,7 +159,7 @@ def rendered(
         timings = published() / "timings.csv"
         if timings.is_file() and "timings.csv" in files:
             old = timings.read_text(encoding="utf-8")
-            same = old.partition("\n")[2] == files["timings.csv"].partition("\n")[2]  # without the line of the date
+            same = old.partition("\n")[2] == files["timings.csv"].partition("\n")[2]  # without the date
             files["timings.csv"] = old if same else files["timings.csv"]
         return files
 
@@ -171,15 +171,15 @@ def rendered(
 
 @dataclass(frozen=True)
 class Drawing:
-    """Draws a page in a worker from (its name, its stored material)."""
+    """A function that renders a page in a worker from (name, material)."""
 
-    references: tuple[str, ...]  # the stored references
+    references: tuple[str, ...]  # The stored references.
     command: str
 
     def __call__(self, item: tuple[str, Material]) -> dict[str, str]:
         name, material = item
         page = _pages(self.references)[name]  # A page has functions, which can't be pickled.
-        gc.disable()  # It would traverse all imported objects, while one page leaves little garbage.
+        gc.disable()  # Collection would be slow, and a page leaves little garbage.
         try:
             return rendering.render_page(page, material, self.command)
         finally:
@@ -195,9 +195,9 @@ def _pages(references: tuple[str, ...]) -> dict[str, Page]:
 
 
 def drawn(material: Materials, references: Iterable[str], command: str, order: Path) -> dict[str, dict[str, str]]:
-    """Page -> its files, for the pages that workers could render; the caller renders the others.
+    """Name of a page -> its files. Pages that workers could not render are missing.
 
-    references: those of the store; order: a folder with a report, whose largest pictures are drawn first.
+    references: references in the store. order: folder of an earlier report, whose sizes determine the order.
     """
 
     def size(pair: tuple[str, Material]) -> int:
@@ -213,7 +213,7 @@ def drawn(material: Materials, references: Iterable[str], command: str, order: P
 
 
 def moving_picture(material: Iterable[Material]) -> dict[str, str]:
-    """Name -> text of the animation in README; empty unless all of its motions are stored."""
+    """Name -> text of the animation in README. Empty unless all motions in it are stored."""
     answers = {task: answer for stored in material for task, answer in stored.answers.items() if task in MOVING_TASKS}
     if any(task not in answers for task in MOVING_TASKS):
         return {}
@@ -224,8 +224,8 @@ def moving_picture(material: Iterable[Material]) -> dict[str, str]:
 
 
 def write_files(texts: Mapping[Path, str], line: str = "") -> None:
-    """Write all files or none, then print `line` unless it is empty."""
-    with delayed_signals() as check:  # an interruption between two files would leave a mixed report
+    """Write all files or no file, then print `line`."""
+    with delayed_signals() as check:  # An interruption must not leave a mixed report.
         write_whole(texts, "the pages that were there stay as they were")
         check()
     if line:
@@ -233,7 +233,7 @@ def write_files(texts: Mapping[Path, str], line: str = "") -> None:
 
 
 def search_files(results: Path, publish: bool = False) -> dict[str, str]:
-    """The page of the stored searches and its picture; for publishing, only those with the seeds of the last commit."""
+    """The page and the picture of stored searches. A published page has only searches with the last commit's seeds."""
     if not (results / SEARCH / STORE).exists():
         return {}
     planned = sum(piece.count for piece in plan.published_chunks()) if publish else 0
@@ -248,7 +248,7 @@ def published() -> Path:
 
 
 def refuse_outside_a_checkout() -> None:
-    """Raises BadInput unless the package is in a checkout, since an installed copy has no README."""
+    """Raise BadInput unless the package is in a checkout. An installed copy has no README."""
     for path in (CHECKOUT / "README.md", published() / "index.md"):
         if not path.is_file():
             raise BadInput(f"--publish is for a checkout of the project; there is no {path}")

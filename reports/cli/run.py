@@ -1,4 +1,4 @@
-"""`crosscheck run`: runs the cells that are not stored yet and shows the progress."""
+"""`crosscheck run` runs the cells that are not stored yet and shows the progress."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def run(
     as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
-    """Run the cells that are not stored yet; what is done survives an interruption."""
+    """Run the cells that are not stored yet. An interrupted run can be continued."""
     choose_device(device)
     chosen = Selection(
         tuple(scene or ()), engine, variant, tuple(settings or ()), full, tuple(every or ()), tuple(step or ()), limit
@@ -87,16 +87,16 @@ def run(
 
 @dataclass(frozen=True)
 class Selection:
-    """The options of `crosscheck run` and `planar_crosscheck.run` that choose cells; each property raises BadInput."""
+    """The options of `crosscheck run` that choose cells. The properties raise BadInput."""
 
-    scenes: tuple[str, ...] = ()  # names of scenes or pages, or references; all if empty
+    scenes: tuple[str, ...] = ()  # Names of scenes or pages, or references. Empty means all scenes.
     engine: str | None = None
     variant: str | None = None
-    settings: tuple[str, ...] = ()  # "NAME=VALUE" for numbers of the scenes
+    settings: tuple[str, ...] = ()  # "NAME=VALUE" for parameters of the scenes.
     full: bool = False
-    every: tuple[int, ...] = ()  # Only these numbers of steps between samples.
-    steps: tuple[float, ...] = ()  # Only these steps [s].
-    limit: float = TIME_LIMIT  # CPU seconds of a cell.
+    every: tuple[int, ...] = ()  # Selected numbers of steps between samples.
+    steps: tuple[float, ...] = ()  # Selected steps [s].
+    limit: float = TIME_LIMIT  # Limit of CPU seconds for a cell.
 
     def __post_init__(self) -> None:
         if not 0 < self.limit < float("inf"):
@@ -122,7 +122,7 @@ class Selection:
 
     @cached_property
     def items(self) -> Sequence[Cell | Task]:
-        """The cells, and the tasks of pages unless steps are selected or named scenes are run quickly."""
+        """The selected cells and tasks. A run with selected steps, and a quick run of named scenes, has no tasks."""
         known, scenes = self.choice.known, self.choice.scenes
         only_cells = self.every or self.steps or self._alone
         tasks = () if only_cells else choose_tasks(scenes, self.choice.engines, known.pages, self.full)
@@ -135,7 +135,7 @@ class Selection:
 
     @property
     def left_out(self) -> list[tuple[Cell, str]]:
-        """(cell, reason) of the cells in the grid of a named engine that are not run."""
+        """(cell, reason) for the cells of a named engine that are in the grid and are not run."""
         if self.engine is None or self.every or self.steps:
             return []
         pages = self.choice.known.pages
@@ -145,7 +145,7 @@ class Selection:
 def run_grid(
     chosen: Selection, results: Path = FOLDER, workers: int | None = None, fresh: bool = False
 ) -> list[Measurement]:
-    """The rows of the selected cells; cells that are not stored in `results` are run. Raises BadInput."""
+    """The rows of the selected cells. Cells that are not stored in `results` are run. Raises BadInput."""
     by = cluster.pool(workers)
     with Store(results / STORE) as store:
         store.save_references(chosen.references)
@@ -156,7 +156,7 @@ def run_grid(
 
 
 def refuse_without_motion(rows: Sequence[Measurement]) -> None:
-    """Raises BadInput if every cell was refused, since the numbers of the scenes are invalid."""
+    """Raise BadInput if every cell was refused, since the parameters of the scenes are then invalid."""
     if rows and all(row.outcome == Outcome.REFUSED for row in rows):
         raise BadInput(rows[0].sentence)
 
@@ -169,9 +169,9 @@ def run_interruptible(
     limit: float,
     crew: cluster.Workforce | None = None,
 ) -> int:
-    """Run cells and tasks on `crew`, or on all processors, and show the progress; return the number of items run.
+    """Run cells and tasks, show the progress, and return the number of items run. All processors are used by default.
 
-    Raises KeyboardInterrupt after a line about the stored rows.
+    After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt.
     """
     by = crew or cluster.pool(None)
     if is_cold(adaptive=False):
@@ -181,13 +181,13 @@ def run_interruptible(
 
 
 def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:
-    """Raises Broken if every cell failed, was aborted or timed out."""
+    """Raise Broken if every cell has failed, was aborted or has timed out."""
     if rows and all(Outcome(row.outcome).grade == 3 for row in rows):
         raise Broken(f"none of {len(rows)} cells gave a motion; the first {rows[0].outcome}: {rows[0].sentence}")
 
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:
-    """Print a table for each scene with a row for each method, and the outcomes of cells outside the sweeps."""
+    """Print a table of methods for each scene, and the outcomes of cells outside the sweeps."""
     judged_rows = judged(rows)
     console.keep(judged_rows)
     for scene in dict.fromkeys(row.scene for row in judged_rows if row.purpose == "sweep"):

@@ -1,4 +1,4 @@
-"""`crosscheck search`: tests of engines on random mechanisms, by physical laws, other descriptions and the judge."""
+"""`crosscheck search` tests engines on random mechanisms by physical laws, equivalent descriptions and the judge."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from reports.search.run import DEFAULT_CASES, Search
 from reports.search.shrinking import files_of, line_of
 from reports.search.subjects import Adapted, Alone, Subject
 
-FRESH_CASES = 10  # of each engine for a fresh seed
+FRESH_CASES = 10  # Number of cases for each engine with a fresh seed.
 USUAL = ",".join(DEFAULT_ORACLES)
 FURTHER = ",".join(name for name in ORACLES if name not in DEFAULT_ORACLES)
 Seed = Annotated[
@@ -74,7 +74,7 @@ def search(
     as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
-    """Search random mechanisms for faults; each finding is made small and written as a script of the engine's own."""
+    """Search random mechanisms for faults, and reduce and write each finding as a script of the engine."""
     chosen = any((engine, variant, cases, seed is not None, kinds, decades, release, oracles != USUAL))
     _refuse(seconds, seed, fresh, published, chosen)
     subjects = chosen_subjects(engine, variant, release, everything=fresh or published)
@@ -109,7 +109,7 @@ def search(
 
 
 def _refuse(seconds: float | None, seed: int | None, fresh: bool, published: bool, chosen: bool) -> None:
-    """Raise BadInput for options that contradict each other; `chosen`: whether any option selects cases."""
+    """Raise BadInput for options that contradict each other. chosen: whether an option selects cases."""
     if seconds is not None and not 0 < seconds < float("inf"):
         raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
     if fresh and (seconds is None or published or seed is not None):
@@ -123,7 +123,7 @@ def _refuse(seconds: float | None, seed: int | None, fresh: bool, published: boo
 def chosen_subjects(
     engine: str | None, variant: str | None, release: str | None = None, everything: bool = False
 ) -> list[Subject]:
-    """The engines of this name and variant, and MuJoCo without our adapter if it is selected. Raises BadInput."""
+    """The engines with this name and variant. MuJoCo without our adapter can be selected too. Raises BadInput."""
     if release is not None:
         if engine not in (None, "mujoco") or variant not in (None, "alone"):
             raise BadInput(f"--release is {release!r}, which is MuJoCo's alone; leave out --engine and --variant")

@@ -1,4 +1,4 @@
-"""The scenes, engines, cells and tasks that a command line selects; errors suggest the nearest known name."""
+"""The scenes, engines, cells and tasks that a command line selects. Errors suggest the most similar known name."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from reports.model.ending import BadInput, nearest
 from reports.model.page import Page
 from reports.model.tasks import Task
 
-# A quick run of everything takes about twenty seconds on two cores. The limits apply to times by the formulas of
-# engines and tasks. Only the shortest cell of each method in each scene may take longer than QUICK_SECONDS.
-QUICK_SECONDS = 0.02  # s.
-QUICK_CELL = 0.1  # s; limit of the shortest cell, of tasks, and of cells in `crosscheck versions`.
+# Longest estimated time of a cell in a quick run [s], except for the shortest cell of each method in each scene. A
+# quick run of everything takes about twenty seconds on two cores.
+QUICK_SECONDS = 0.02
+QUICK_CELL = 0.1  # Longest estimated time [s] of the shortest cell, of a task, and of a cell in `crosscheck versions`.
 
 
 def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence[Page]) -> tuple[Scene, ...]:
-    """The scenes with these names or on pages with these names; all scenes without names. Raises BadInput."""
+    """The scenes with these names, or on pages with these names. Without names all scenes. Raises BadInput."""
     if not words:
         return tuple(scenes)
     taught = {scene: [page.name for page in pages if page.teaches(scene)] for scene in scenes}
@@ -35,7 +35,7 @@ def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence
 
 
 def choose_engines(engine: str | None, variant: str | None, engines: Sequence[Engine]) -> tuple[Engine, ...]:
-    """The engines with this name and this variant; None selects all. Raises BadInput."""
+    """The engines with this name and this variant. None selects all names or variants. Raises BadInput."""
     from engines.registry import ABSENT
 
     if engine in ABSENT:
@@ -58,7 +58,7 @@ def steps_per_sample(scene: Scene, step: float) -> int:
     if not ratio <= LARGEST_COUNT:
         raise BadInput(f"step is {step:g} s: {scene.name} would take {ratio:.3g} steps between two samples")
     every = max(1, round(ratio))
-    # 1e-9: a step that is typed with ten digits counts as a divisor.
+    # A step that is typed with ten digits counts as a divisor.
     if abs(ratio - every) > 1e-9 * ratio:
         raise BadInput(
             f"step {step:g} s does not divide the {scene.spacing:.10g} s between samples of {scene.name}; "
@@ -68,7 +68,7 @@ def steps_per_sample(scene: Scene, step: float) -> int:
 
 
 def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
-    """All installed engines: those of the registry, and those of the grids, experiments and tasks of pages."""
+    """All installed engines of the registry, and of the grids, experiments and tasks of pages."""
     from engines.registry import ENGINES, INSTALLED
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
@@ -78,7 +78,7 @@ def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
 
 
 def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page]) -> tuple[Engine, ...]:
-    """The engines that the scene's page compares; for a scene without a page those in VARIANTS."""
+    """The engines that the scene's page compares. For a scene without a page, these are the engines in VARIANTS."""
     from engines.registry import VARIANTS
 
     compared = next((page.engines_of(scene) for page in pages if page.teaches(scene)), VARIANTS)
@@ -86,7 +86,7 @@ def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page])
 
 
 def _beside(engines: Sequence[Engine]) -> tuple[Engine, ...]:
-    """The engines among these that are not in the grid."""
+    """Select the engines that are not in the grid."""
     from engines.registry import OTHERS
 
     return tuple(engine for engine in engines if engine in OTHERS)
@@ -102,11 +102,11 @@ def choose_cells(
     named: bool = False,
     alone: bool = False,
 ) -> tuple[Cell, ...]:
-    """The cells of a run: the grid of these scenes, and the experiments of their pages. Raises BadInput for bad steps.
+    """The cells of the grid of these scenes, and of the experiments on their pages. Raises BadInput for invalid steps.
 
-    full: all steps, also the usual ones of users; otherwise `_quick` leaves out long cells. every, steps: these steps
-    replace the grid. named: a quick run has the shortest cell of each scene even if it is long. alone: a quick run has
-    no experiments in other scenes.
+    full: all steps are run, also the steps that users choose. Otherwise `_quick` leaves out long cells. every, steps:
+    these steps replace the grid. named: a quick run includes the shortest cell of each method even if it is long.
+    alone: a quick run leaves out experiments in other scenes.
     """
     if every or steps:
         chosen: dict[Cell, None] = {}
@@ -135,7 +135,7 @@ def choose_cells(
 def left_out(
     scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool, chosen: Sequence[Cell]
 ) -> list[tuple[Cell, str]]:
-    """(cell, reason) of the cells in the grid that `choose_cells` has left out."""
+    """(cell, reason) for each cell in the grid that `choose_cells` has left out."""
     remaining, quick = set(chosen), f"and a quick run has {QUICK_SECONDS:g} s for a run"
     return [
         (cell, too_much(cell) or f"step_cost says {estimated_seconds(cell):.4g} s, {quick}")
@@ -149,7 +149,7 @@ def left_out(
 def choose_tasks(
     scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool
 ) -> tuple[Task, ...]:
-    """The tasks of the pages that are run with these scenes, without those of other engines.
+    """The tasks of pages that are run with these scenes. Tasks of other engines are left out.
 
     A quick run leaves out tasks that take longer than QUICK_CELL.
     """
@@ -164,10 +164,10 @@ def choose_tasks(
 
 
 def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
-    """The cells of a quick run: the short ones, and the shortest of each method unless it takes longer than `most` [s].
+    """The cells of a quick run are all short cells, and each method's shortest cell if it takes at most `most` [s].
 
-    Of an engine beside the grid only the short cell with the smallest step is run. The times are those of the engines'
-    formulas, so that the choice does not depend on the machine.
+    For an engine outside the grid only the longest of the short cells is run. Times are estimated by the engines'
+    formulas, so the choice does not depend on the machine.
     """
     groups: dict[tuple[Scene, Engine, str], list[Cell]] = {}
     for cell in cells:
@@ -182,7 +182,7 @@ def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
 
 
 def page_cells(page: Page) -> tuple[Cell, ...]:
-    """All cells of a page, without borrowed ones and without those of engines that are not installed."""
+    """All cells that a page runs. Cells of engines that are not installed are left out."""
     from engines.registry import INSTALLED
 
     cells: list[Cell] = []
@@ -194,12 +194,12 @@ def page_cells(page: Page) -> tuple[Cell, ...]:
 
 
 def page_tasks(page: Page) -> tuple[Task, ...]:
-    """All tasks of a page, without those of engines that are not installed."""
+    """All tasks of a page. Tasks of engines that are not installed are left out."""
     return tuple(task for task in all_tasks(page) if task.engine is None or not task.engine.missing)
 
 
 def shown_cells(page: Page) -> tuple[Cell, ...]:
-    """All cells whose rows a page can show, also borrowed ones and those of engines that are not installed."""
+    """All cells whose rows a page can show, including borrowed cells and cells of engines that are not installed."""
     from engines.registry import OTHERS
 
     other_cells = (*beside_cells(page.scenes, OTHERS), *page.extra_cells())

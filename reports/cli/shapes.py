@@ -1,4 +1,4 @@
-"""`crosscheck shapes MOTION.csv`: writes two shapes that generate a motion when one rolls on the other."""
+"""`crosscheck shapes MOTION.csv` writes two shapes. One rolls on the other and thus generates the motion."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from reports.run.files import write_whole
 
 WRITERS = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
 DEFAULT_KINDS = ("csv", "svg")  # Without dxf, which needs the extra `dxf`.
-MOST_POINTS = 1_000_000  # More than a workshop can cut, and less than memory can hold.
-MOST_BYTES = 2**27  # Of the table of poses: about a hundred for each of a million poses.
-COARSE = 1e-3  # Relative error of the shapes above which the user is told that the table has too few poses.
+MOST_POINTS = 1_000_000  # No workshop can cut more points, and memory can hold them.
+MOST_BYTES = 2**27  # Largest size of the table of poses, about a hundred bytes for each of a million poses.
+COARSE = 1e-3  # If the relative error of the shapes is larger, a sentence says that the table has too few poses.
 
 
 def shapes(
@@ -35,7 +35,7 @@ def shapes(
 ) -> None:
     """Write the two shapes that generate a motion when the one rolls on the other.
 
-    They are the curves of the instant centre of the poses in MOTION.csv (its centrodes), in space and in the body.
+    The shapes are the centrodes of the motion. These are the curves of the instant centre in space and in the body.
     """
     kinds = dict.fromkeys(kind or DEFAULT_KINDS)
     if unknown := [word for word in kinds if word not in WRITERS]:
@@ -62,7 +62,7 @@ def shapes(
 
 
 def _describe(curves: Centrodes, pair: Shapes) -> list[str]:
-    """Sentences about the length of the shapes, their error, and the motion when one rolls on the other."""
+    """Sentences about the lengths and the error of the shapes, and about the motion that they generate."""
     size = float(np.ptp(np.vstack([pair.space, pair.body]), axis=0).max())
     lines = [
         f"{len(curves.theta)} poses over {np.ptp(curves.theta):.4g} rad; both shapes are "

@@ -1,4 +1,4 @@
-"""`crosscheck list` prints the scenes and engines; `crosscheck show` prints the stored numbers of a scene."""
+"""`crosscheck list` prints the scenes and engines. `crosscheck show` prints the stored numbers of a scene."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from reports.write.tables import ERROR_HEADER, error_rows, order_rows, step_word
 
 
 def list_command(scene: Scenes = None, engine: EngineName = None, variant: VariantName = None) -> None:
-    """Scenes, engines and variants, and what is unsupported, with the reason."""
+    """List scenes, engines and variants, and unsupported combinations with the reason."""
     choice = choose(scene or (), engine, variant)
     engines = choice.engines if engine is not None else choose_engines(None, variant, (*ENGINES, *INSTALLED))
     terminal, scenes = Terminal(140), choice.scenes
@@ -52,7 +52,7 @@ def list_command(scene: Scenes = None, engine: EngineName = None, variant: Varia
     print_table(terminal, "Engines", ["engine", "variant", "settings"], rows, 3)
     terminal.print()
     reasons = support([Cell(listed, method, 1) for listed in scenes for method in engines])
-    # Sorted, since the order of the workers' answers varies.
+    # The rows are sorted, since workers answer in any order.
     rows = sorted((cell.scene.name, method_name(cell.engine), reason) for cell, reason in reasons.items() if reason)
     if rows:
         print_table(terminal, "Unsupported", ["scene", "method", "why"], rows, 3)

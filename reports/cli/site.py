@@ -1,4 +1,4 @@
-"""`crosscheck site`: writes the results as a static site; motions of lessons that are not stored are run."""
+"""`crosscheck site` writes the results as a static site. Motions of lessons that are not stored are run first."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from reports.site.lesson import SiteSource
 from reports.site.packages import npm_trouble
 from reports.write.provenance import versions
 
-NPM_CACHE = "npm"  # the folder in that of the results with downloaded packages
+NPM_CACHE = "npm"  # Name of the folder with downloaded packages, inside the folder of results.
 
 
 def site(
@@ -45,7 +45,7 @@ def site(
         raise BadInput(f"{folder} has no index.md: write the pages first with {command}, or name --pages")
     require_packages()
     refuse_strangers(output)
-    folder_for(output.absolute().parent, REMEDY)  # before anything is run
+    folder_for(output.absolute().parent, REMEDY)  # This check comes before any run.
     if serve:
         server(Path(), port).server_close()
     terminal = Terminal(140)
@@ -57,7 +57,7 @@ def site(
         contributing=_of_checkout("CONTRIBUTING.md"),
         lecture=_of_checkout("lecture.ipynb"),
     )
-    if trouble := npm_trouble(source.cache):  # printed now, since building the site takes a while
+    if trouble := npm_trouble(source.cache):  # The message comes now, since building takes long.
         said(f"parts of the site will be missing: {trouble}")
     source.answers = _answers(terminal, results)
     files = build(source)
@@ -91,7 +91,7 @@ def _of_checkout(name: str) -> str:
 
 
 def _answers(terminal: Terminal, results: Path) -> dict[Motion, Answer]:
-    """The motions of the lessons; those that are not stored are run first."""
+    """The motions of the lessons. Motions that are not stored are run first."""
     wanted = tasks()
     with opened(results / STORE) as store:
         run_interruptible(terminal, store, wanted, fresh=False, limit=60.0)

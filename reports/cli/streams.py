@@ -1,4 +1,4 @@
-"""Standard streams: opened if they are closed, written without a traceback, and closed without an error message."""
+"""Functions that open, write and close the standard streams without tracebacks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reports.model.ending import FileTrouble, visible
 
 @contextmanager
 def written() -> Iterator[None]:
-    """A context for writing to the standard output: raises FileTrouble, or BrokenPipeError if the reader has ended."""
+    """A context for output. It raises BrokenPipeError if the reader has ended, and FileTrouble for other errors."""
     try:
         yield
         sys.stdout.flush()
@@ -28,17 +28,17 @@ def said(words: str) -> None:
 
 
 def open_streams() -> None:
-    """Open closed streams on the null device, so that no other file gets their number and their output."""
+    """Open closed streams on the null device, so that no other file gets their descriptor and their output."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115 (it stays open)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # for characters that the locale lacks
+            stream.reconfigure(errors="backslashreplace")  # The locale may lack characters.
 
 
 def leave_streams() -> None:
-    """Drop output that can't be written, since Python would print an error message about it at its end."""
+    """Discard output that can't be written. Python would print an error message about it when it ends."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -26,15 +26,15 @@ from reports.run.store import Store
 from reports.write.tables import display_width, markdown, text_table, words_of
 from reports.write.templates import inert
 
-PULSE = 10.0  # s between two lines of progress into a file or a pipe
+PULSE = 10.0  # Time [s] between two lines of progress in a file or a pipe.
 
 
 class Terminal(Console):
-    """The standard output, with the width of the terminal, or of `width` columns into a file or a pipe.
+    """The output of a command. It has the width of the terminal, or `width` columns in a file or a pipe.
 
-    `form` is "text", "markdown" or "json", which is one document at the end (`telling`). With the last two, only the
-    output of `tell` and `print_table` goes to standard output, and other output, such as progress, to standard error.
-    `print` raises the errors of `written`.
+    `form` is "text", "markdown" or "json". Markdown and JSON go to standard output, and other output, such as progress,
+    then goes to standard error. The JSON document is printed at the end (`telling`). `print` raises the errors of
+    `written`.
     """
 
     def __init__(self, width: int, form: str = "text") -> None:
@@ -47,7 +47,7 @@ class Terminal(Console):
             super().print(*objects, **options)
 
     def say(self, sentence: str) -> None:
-        """Print a sentence that is not a result, without markup, since names of files may contain brackets."""
+        """Print a sentence that is no result. Brackets in it are not markup, since file names may contain them."""
         self.print(visible(sentence), markup=False, highlight=False, soft_wrap=True)
 
     def tell(self, sentence: str) -> None:
@@ -60,13 +60,13 @@ class Terminal(Console):
             self.say(sentence)
 
     def close(self, status: int, message: str = "") -> None:
-        """Print the JSON document, if that is the form."""
+        """Print the JSON document if the form is "json"."""
         if self.form == "json":
             with written():
                 print(json.dumps(self.document | {"status": status, "message": message}, indent=1))
 
     def keep(self, rows: Iterable[Measurement]) -> None:
-        """Add rows with all digits to the JSON document; their keys are the column names of `errors.csv`."""
+        """Add rows with all digits to the JSON document. The keys are the column names of `errors.csv`."""
         if self.form == "json":
             cells = ({name: plain(value) for name, value in vars(row).items()} for row in rows)
             self.document.setdefault("rows", []).extend(cells)
@@ -77,7 +77,7 @@ class Terminal(Console):
 
 @contextmanager
 def opened(path: Path) -> Iterator[Store]:
-    """Open a store for writing; a line on stderr reports a damaged one that was renamed."""
+    """Open a store for writing. If a damaged store was renamed, a line on stderr reports it."""
     with Store(path) as store:
         if store.notice:
             said(store.notice)
@@ -86,10 +86,11 @@ def opened(path: Path) -> Iterator[Store]:
 
 @contextmanager
 def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
-    """A terminal with the form of these options. Raises BadInput for both options at once.
+    """A terminal with the form that the options select. Raises BadInput for both options at once.
 
-    The JSON document is printed at the end, but not after bad input. It has `tables`, each with `title` and `rows`
-    (objects with column names as keys; null for an unknown number), `sentences`, the exit `status`, and `message`.
+    The JSON document is printed at the end, but not after invalid input. It has `tables`, `sentences`, the exit
+    `status`, and `message`. A table has a `title` and `rows`. A row is an object with column names as keys, in which an
+    unknown number is null.
     """
     if as_json and as_markdown:
         raise BadInput("--json and --markdown are two forms of one output; give one of them")
@@ -107,10 +108,9 @@ def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
 def print_table(
     console: Terminal, title: str, header: Sequence[str], rows: Iterable[Sequence[str | float]], left: int
 ) -> None:
-    """Print a table in the form of the terminal. The first `left` columns are words, the others numbers.
+    """Print a table in the form of the terminal. The first `left` columns contain words, and further columns numbers.
 
-    Cells are plain text, so that a unit in brackets, as in "step [s]", is not markup. rich folds a table that is too
-    wide.
+    Cells are plain text, so a unit in brackets, as in "step [s]", is not markup. rich folds a table that is too wide.
     """
     if console.form == "json":
         cells = [{name: plain(cell) for name, cell in zip(header, row, strict=True)} for row in rows]
@@ -126,7 +126,7 @@ def print_table(
     if max(map(display_width, lines)) <= console.width and not any("\n" in word for row in words for word in row):
         head, *rest = lines
         text = Text.assemble((title, "table.title"), "\n", (head, "bold"), *(f"\n{line}" for line in rest))
-        console.print(text, soft_wrap=True)  # rich.Table takes ten times as long
+        console.print(text, soft_wrap=True)  # rich.Table would take ten times as long.
         return
     table = Table(title=Text(title), title_justify="left", header_style="bold", show_edge=False, pad_edge=False)
     for index, name in enumerate(header):
@@ -137,7 +137,7 @@ def print_table(
 
 
 def plain(cell: Any) -> str | float | None:
-    """A cell of the JSON document: null for NaN, text for an infinite number."""
+    """The JSON value of a cell. NaN becomes null, and an infinite number becomes text."""
     if not isinstance(cell, int | float):
         return str(cell)
     return cell if math.isfinite(cell) else None if math.isnan(cell) else str(cell)
@@ -153,10 +153,10 @@ def interruptible(
     fresh: bool = False,
     size: Callable[[Any], int] | None = None,
 ) -> Iterator[tuple[Sequence[Any], Callable[..., None], Callable[[list[Any]], None]]]:
-    """(the items to run, done, watch) for a run into a store that Ctrl-C may interrupt; done, watch: see `progress`.
+    """(items to run, done, watch) for a run that Ctrl-C may interrupt. `progress` describes done and watch.
 
-    `words`: the plural noun for the items. `fresh`: run stored items again. `size`: the number of cases in an item, if
-    cases are counted. Raises KeyboardInterrupt after a line about the stored rows.
+    words: plural noun for the items. fresh: whether stored items are run again. size: function that returns the number
+    of cases in an item. After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt.
     """
     if sentence := mislabelled():
         raise BadInput(sentence)
@@ -177,9 +177,9 @@ def interruptible(
 def progress(
     console: Console, total: int, check: Callable[[], None], unit: str = "cells"
 ) -> Iterator[tuple[Callable[..., None], Callable[[list[Any]], None]]]:
-    """(done, watch): done(result, many=1) counts results, watch(items) shows the running items; both call `check`.
+    """(done, watch). done(result, many=1) counts results. watch(items) shows the running items. Both call `check`.
 
-    A terminal shows a bar; a file or a pipe gets a line every PULSE seconds.
+    A terminal shows a bar. A file or a pipe gets a line every PULSE seconds.
     """
     bar: Progress | None = None
     if console.is_terminal:

@@ -1,4 +1,4 @@
-"""`crosscheck versions`: runs scenes in released versions of an engine and prints a table of their errors."""
+"""`crosscheck versions` runs scenes in released versions of an engine and prints a table of errors."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from reports.versions.catalogue import compared_versions, engines_named
 from reports.versions.column import VersionColumn
 from reports.versions.table import DATA, ReleaseTable, as_csv, as_published, changes, entries, merged, read, released
 
-WIDTH = 150  # columns of a table in a file or a pipe
+WIDTH = 150  # Number of columns of a table in a file or a pipe.
 
 
 def versions(
@@ -48,7 +48,7 @@ def versions(
     as_markdown: AsMarkdown = False,
     results: Folder = FOLDER,
 ) -> None:
-    """Run scenes in released versions of an engine; each is installed once, in the user's cache folder."""
+    """Run scenes in released versions of an engine. A version is installed once, in the user's cache folder."""
     if publish:
         refuse_outside_a_checkout()
     wanted = _versions_by_engine(engine, version or (), everything)
@@ -95,7 +95,7 @@ def _run(
     store: Path,
     **terms: Any,
 ) -> VersionColumn:
-    """Run a release, and print the number of rows. Raises BadInput."""
+    """Run scenes in a release and print the number of rows. Raises BadInput."""
     begin = monotonic()
     column = run_release(name, number, scenes, store, progress_of(console, check), announce_pip, **terms)
     console.say(f"{name} {number}: {len(column.rows)} rows after {monotonic() - begin:.0f} s")
@@ -105,7 +105,7 @@ def _run(
 
 
 def progress_of(console: Terminal, check: Callable[[], None]) -> Progress:
-    """A Progress that shows the cells of a version on a terminal; `check` raises after Ctrl-C."""
+    """A Progress that shows the cells of a version on a terminal. After Ctrl-C, `check` raises."""
 
     @contextmanager
     def shown(label: str, count: int) -> Iterator[tuple[Callable[..., None], Callable[[Sequence[str]], None]]]:
@@ -133,13 +133,13 @@ def _versions_by_engine(
 
 
 def named_scenes(words: list[str] | tuple[str, ...]) -> tuple[Scene, ...]:
-    """The scenes with these names, which may be separated by commas; all scenes without names. Raises BadInput."""
+    """The scenes with these names, which commas may separate. Without names all scenes. Raises BadInput."""
     names = [name.strip() for argument in words for name in argument.split(",") if name.strip()]
     return choose(names).scenes
 
 
 def announce_pip(word: str) -> None:
-    """Print a line on stderr before pip runs, without the prefix of an error message."""
+    """Print a line on stderr before pip runs. It does not have the prefix of an error message."""
     print(f"{word}: installed by pip, unless it is there already", file=sys.stderr, flush=True)
 
 
