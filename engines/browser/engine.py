@@ -1,24 +1,24 @@
 """Physics engines of the browser under test: planck and p2 in JavaScript, Rapier and Jolt as WebAssembly.
 
-A child process of Node steps them; `worlds.mjs` builds their joints. Node compiles code while it runs. So the process
-lives as long as this one, and steps a trial world of each kind of mechanism before the first run, which is not timed.
-`python -m engines.browser` installs the packages of npm into the user's cache folder.
+A child process of Node runs `worlds.mjs`, which builds and steps the worlds. Node compiles code while it runs.
+Therefore the child lives as long as this process. Before the first run of each kind of mechanism, the child steps a
+trial world, which is not timed. `python -m engines.browser` installs the packages of npm into the user's cache folder.
 
-All damping of bodies is off: planck has none; p2 removes 10 % and Jolt 5 % of the velocity per second as shipped. No
-body sleeps and none collides. A Pin is a revolute joint or a hinge, a Weld a fixed joint, a Rod a distance joint. A
-Slot is a prismatic joint where a Drive of rate zero keeps the angle, else planck's wheel joint or p2's prismatic
-constraint without its rotational lock. A Drive is the motor of the Pin between the same two bodies.
+The adapter switches off damping, which removes 10 % (p2) or 5 % (Jolt) of the velocity per second as shipped. Bodies do
+not sleep or collide. A Pin is a revolute joint or a hinge, a Weld is a fixed joint, and a Rod is a distance joint. A
+Slot is a prismatic joint if a Drive of rate zero keeps the angle. Otherwise it is planck's wheel joint, or p2's
+prismatic constraint without the rotational lock. A Drive is the motor of the Pin between the same two bodies.
 
-Every step is semi-implicit Euler: forces, impulses of the joints, then positions. The engines differ in the correction
-of gaps: planck and Jolt move the bodies after the step (split impulses, repeated `positionIterations` times), p2 has
-springs solved implicitly (Lacoursière's SPOOK, stiffness 1e6 N/m as shipped), Rapier has soft joints, solved in
-`numSolverIterations` sub-steps. So no order is declared.
+Every step is semi-implicit Euler: first forces, then impulses of the joints, then positions. The engines correct gaps
+in different ways. planck and Jolt move the bodies after the step (split impulses, `positionIterations` times). p2 has
+implicit springs (Lacoursière's SPOOK, 1e6 N/m as shipped). Rapier has soft joints, which it solves in
+`numSolverIterations` sub-steps. Therefore no order is declared.
 
-Rapier, Jolt and p2 as shipped compute in single precision, planck in double. planck reduces speeds above 2 m and a
-quarter turn in a step (Settings.maxTranslation, maxRotation); its tuned variant removes these limits. Rapier reduces
-speeds above 400 m/s and an eighth of a turn in a step. It integrates a rotation as a normalised sum of cosine and sine,
-so that a body turns by less than its angular velocity w, relatively by (w h)^2 / 3 with the sub-step h. A run in which
-a speed may have been reduced has a warning.
+Rapier, Jolt and p2 as shipped compute in single precision, and planck computes in double precision. planck reduces
+speeds above 2 m or a quarter turn per step (Settings.maxTranslation, maxRotation), but its tuned variant has no limits.
+Rapier reduces speeds above 400 m/s or an eighth of a turn per step. Rapier normalises cosine and sine after a step, so
+a body with the angular velocity w turns too little, by the share (w h)^2 / 3 with the sub-step h. A run has a warning
+if a speed may have been reduced.
 """
 
 from __future__ import annotations
@@ -50,12 +50,12 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-Settings = tuple[tuple[str, float], ...]  # the engine's own parameters by name
+Settings = tuple[tuple[str, float], ...]  # parameters of the engine by name
 INSTALL = "python -m engines.browser"
-STEP_COST = 20e-6  # s: approximate CPU time of a step of three bodies
+STEP_COST = 20e-6  # approximate CPU time [s] of a step of three bodies
 SINGLE = 2.0**-23
 SPEED_CUT = RunWarning("upstream: the engine cut a velocity to its limit", "rate limit", "upstream")
-# The largest velocities [m/s] and [rad/s] that an engine allows, by the step [s].
+# Largest velocities [m/s, rad/s] that an engine allows, as functions of the step [s].
 SPEED_LIMITS: Mapping[str, Callable[[float], tuple[float, float]]] = {
     "planck": lambda dt: (2.0 / dt, math.pi / 2 / dt),
     "rapier": lambda dt: (400.0, math.pi / 4 / dt),
@@ -64,7 +64,7 @@ EQUAL_ANGLES = 1e-12  # rad
 
 
 def _capability(engine: str, lacks_rod: str = "") -> Capability:
-    """The joints that an adapter builds, and no force but gravity; `lacks_rod`: why it builds no rod."""
+    """The joints that an adapter builds, without force elements; `lacks_rod`: why the adapter builds no rod."""
     lacks = {
         Gear: Lack(f"our adapter of {engine} builds no gear"),
         Skate: Lack(f"{engine} has no joint for a velocity across a blade"),
@@ -105,7 +105,7 @@ class Child:
                 pipe and pipe.close()
 
     def ask(self, operation: str, **request: Any) -> dict[str, Any]:
-        """The answer to a request. Raises Unsupported if the engine refuses, RuntimeError if the process ended."""
+        """Send a request and return the answer. Raises Unsupported for a refusal, RuntimeError for an ended process."""
         assert self.process.stdin
         assert self.process.stdout
         self.process.stdin.write(json.dumps({"operation": operation, **request}) + "\n")
@@ -123,9 +123,9 @@ _children: dict[tuple[str, Settings], Child] = {}
 
 
 def child_of(engine: str, settings: Settings) -> Child:
-    """The process of an engine with these settings, started at the first use and again after its end.
+    """The process of an engine with these settings, which is started at the first use and again after its end.
 
-    Some settings belong to a whole process, so two variants do not share one.
+    Some settings are global in a process, so two variants do not share a process.
     """
     child = _children.get((engine, settings))
     if child is not None and child.process.poll() is None:
@@ -137,9 +137,9 @@ def child_of(engine: str, settings: Settings) -> Child:
 
 
 def joint_requests(mechanism: Mechanism, engine: str) -> list[dict[str, Any]]:
-    """The joints as `worlds.mjs` takes them: a drive is the motor, or the fixed angle, of its pin or slot.
+    """Descriptions of joints for `worlds.mjs`; a drive is the motor of a pin or the fixed angle of a slot.
 
-    Raises Unsupported for a drive without a pin or slot between the same bodies, and a second one there.
+    Raises Unsupported for a drive without a pin or slot between the same bodies, and for a second drive.
     """
     drives: dict[frozenset[str | None], Drive] = {}
     for joint in mechanism.joints:
@@ -172,7 +172,7 @@ def joint_requests(mechanism: Mechanism, engine: str) -> list[dict[str, Any]]:
 
 
 def _fixed_angle(slot: Slot, drive: Drive | None, sign: float, engine: str) -> float | None:
-    """The relative angle [rad] that a slot keeps; None where the second body turns. Raises Unsupported."""
+    """The relative angle [rad] that a slot keeps; None if the second body turns. Raises Unsupported."""
     if drive is None:
         if engine in ("rapier", "jolt"):
             raise Unsupported(f"joint {slot.name!r}: our adapter of {engine} builds no slot in which a body turns")
@@ -186,7 +186,7 @@ def _fixed_angle(slot: Slot, drive: Drive | None, sign: float, engine: str) -> f
 
 
 class BrowserWorld:
-    """The engine's objects for one mechanism."""
+    """A mechanism as a world in the child process."""
 
     def __init__(self, mechanism: Mechanism, dt: float, engine: str, settings: Settings) -> None:
         self.mechanism, self.dt, joints = mechanism, dt, joint_requests(mechanism, engine)
@@ -226,7 +226,7 @@ class BrowserWorld:
 class BrowserEngine(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    settings: the engine's own parameters, by their names in its documentation
+    settings: parameters of the engine by name
     """
 
     forces_by: ClassVar[Enforcement] = "ours"
@@ -238,7 +238,7 @@ class BrowserEngine(ExtraEngine):
 
     @property
     def missing(self) -> str:
-        """One sentence that says how to install it; empty where it is installed."""
+        """One sentence on how to install the engine; empty if it is installed."""
         (package,) = self.packages
         if shutil.which("node") is None:
             return f"{self.name} needs Node, which is not installed, and then: {INSTALL}"
@@ -249,7 +249,7 @@ class BrowserEngine(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """Not declared; the module says why."""
+        """No order is declared, since the engines correct gaps in different ways."""
         return NotDeclared(f"the residual of {self.name}'s iterations follows no rule in the step")
 
     @validated
@@ -280,7 +280,7 @@ class P2(BrowserEngine):
 
     @property
     def precision(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """Vectors are in single precision unless the variable P2_ARRAY_TYPE is set before p2 is loaded."""
+        """p2 uses single precision unless the variable P2_ARRAY_TYPE is set before p2 is loaded."""
         return 0.0 if dict(self.settings).get("double") else SINGLE
 
 
@@ -297,7 +297,7 @@ class Rapier(BrowserEngine):
 
 
 class Jolt(BrowserEngine):
-    """Jolt in WebAssembly: bodies in space that move in the plane (EAllowedDOFs_Plane2D)."""
+    """Jolt in WebAssembly, with bodies that move only in the plane (EAllowedDOFs_Plane2D)."""
 
     name = "jolt"
     packages = ("jolt-physics",)

@@ -1,4 +1,4 @@
-"""The requirements of the contract as named checks, in small mechanisms whose motions are known in closed form."""
+"""Named checks of the contract in small mechanisms whose exact motions are known."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CHECKS: tuple[ConformanceCheck, ...] = (*members.CHECKS, *moving.CHECKS, *same.C
 
 
 def cases(*engines: Engine) -> Iterator[ConformanceCase]:
-    """Every check of every engine, in each mechanism of the check."""
+    """All cases: every check of every engine in every mechanism of the check."""
     for engine in engines:
         subject = CheckedEngine(engine)
         for check in CHECKS:
@@ -26,9 +26,9 @@ def conform(
 ) -> tuple[tuple[ConformanceCase, ConformanceResult], ...]:
     """Run all checks of an engine; returns every case with its result.
 
-    expected_failures: the reason for each expected failure, by the name of the check or `check: mechanism`.
-    Raises AssertionError with a line for each unexpected failure, each expected failure that holds, and each unknown
-    name. Raises ValueError if the code of the engine belongs to another release than its metadata.
+    expected_failures: reasons for expected failures, by name of the check or `check: mechanism`.
+    Raises AssertionError with a line for each unexpected failure, each expected failure that does not occur, and each
+    unknown name. Raises ValueError if the engine's code and its metadata belong to different releases.
     """
     if sentence := other_release([engine]):
         raise ValueError(sentence)

@@ -19,12 +19,12 @@ Array = NDArray[np.float64]
 Status = Literal["holds", "fails", "not supported", "not asked"]
 
 CHECK_STEP = 0.01  # Step of most runs [s].
-CHECK_SAMPLES = 8  # Samples of most runs.
-FEWEST_WORDS = 4  # Least number of words in a reason.
+CHECK_SAMPLES = 8  # Number of samples of most runs.
+FEWEST_WORDS = 4  # Smallest number of words in a reason.
 
 
 class Fails(AssertionError):
-    """The engine violates the contract. The message has the finding, the expectation and the usual cause."""
+    """The engine violates the contract. The message states the finding, the expectation and the usual cause."""
 
     def __init__(self, found: str, expected: str, means: str) -> None:
         super().__init__(f"found {found}; expected {expected}. Usually: {means}")
@@ -35,13 +35,13 @@ class NotApplicable(Exception):
 
 
 def require(holds: bool | np.bool_, found: str, expected: str, means: str) -> None:
-    """Raises Fails unless the requirement holds."""
+    """Raise Fails unless the requirement holds."""
     if not holds:
         raise Fails(found, expected, means)
 
 
 def require_a_sentence(text: str, subject: str) -> None:
-    """Raises Fails unless the text is one line of at least FEWEST_WORDS words."""
+    """Raise Fails unless the text is one line of at least FEWEST_WORDS words."""
     require(
         len(text.split()) >= FEWEST_WORDS and text.isprintable(),
         f"{text!r} for {subject}",
@@ -61,9 +61,9 @@ class CheckedEngine:
         return method_name(self.engine)
 
     def build(self, mechanism: Mechanism, dt: float = CHECK_STEP) -> Run:
-        """Raises Unsupported if the engine does, Fails for any other exception."""
+        """Raises Unsupported if the engine raises it, and Fails for any other exception."""
         try:
-            return self.engine.build(copy.deepcopy(mechanism), dt)  # an engine may change the mechanism
+            return self.engine.build(copy.deepcopy(mechanism), dt)  # a copy, since an engine may change the mechanism
         except Unsupported:
             raise
         except Exception as error:
@@ -95,7 +95,7 @@ def stepped(run: Run, samples: int, every: int) -> Trajectory:
 
 
 def finite(run: Trajectory) -> Trajectory:
-    """Return the trajectory unchanged. Raises Fails if a pose or a twist is not finite."""
+    """Return the trajectory, or raise Fails if a pose or a twist is not finite."""
     for name, values in (("pose", run.pose), ("twist", run.twist)):
         valid = np.isfinite(values).all(axis=(1, 2))
         sample = int(np.argmin(valid))
@@ -104,7 +104,7 @@ def finite(run: Trajectory) -> Trajectory:
 
 
 def projection(mechanism: Mechanism) -> Callable[[Array], Array]:
-    """The projection of velocities (bodies, 3) on those that the joints allow, in the norm of the masses."""
+    """The projection of velocities (bodies, 3) on admissible velocities, in the norm of the masses."""
     root = np.sqrt(mechanism.inertias.reshape(-1))
     _, sizes, directions = np.linalg.svd(mechanism.rows(mechanism.pose) / root)
     free = directions[np.sum(sizes > 1e-9 * sizes[0]) :]
@@ -136,7 +136,7 @@ class World:
 
 @dataclass(frozen=True)
 class ConformanceCheck:
-    """A check function and its mechanisms (`worlds`). The docstring of the function begins with the requirement."""
+    """A check function and its mechanisms (`worlds`). The function's docstring begins with the requirement."""
 
     function: Callable[..., None]
     worlds: tuple[World, ...] = ()
@@ -171,7 +171,7 @@ class ConformanceCase:
         return ": ".join(parts)
 
     def result(self) -> ConformanceResult:
-        """The result of the check; an exception in the check is a failure."""
+        """Run the check and return the result; an exception in the check is a failure."""
         try:
             self.check.function(self.subject, *(() if self.world is None else (self.world,)))
         except Unsupported as reason:

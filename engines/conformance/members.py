@@ -35,7 +35,7 @@ from reference.mechanism import Body, Mechanism
 from reference.rolling.curves import Circle, Line
 from reference.rolling.roll import Roll
 
-COPY_TOLERANCE = 1e-9  # for equal motions; `gives_the_same_bits` checks that they are equal to the last bit
+COPY_TOLERANCE = 1e-9  # for equal motions; `gives_the_same_bits` checks for equal bits
 ADDRESS = re.compile(r" at 0x[0-9a-f]+", re.IGNORECASE)
 BAD_STEPS: tuple[Any, ...] = (0.0, -0.01, math.nan, math.inf, "0.01", None, True)
 BAD_COUNTS: tuple[Any, ...] = (0, -1, 1.5, math.nan, "2", None, True)
@@ -287,8 +287,8 @@ def _odd() -> dict[str, Mechanism]:
         for name, x, spin in (("left", 0.0, 0.5), ("right", 1.0, 0.5), ("left", 0.0, 0.0))
     )
     hinge, other = Pin("hinge", None, "left", nowhere, nowhere), Pin("other", None, "right", (1.0, 0.0), nowhere)
-    beside = Body("right", 1.0, 0.1, (1.0, 0.0, 0.0), (0.0, 0.5, 0.5))  # Moves with the left body's rotation.
-    rim = Roll("rim", "left", "right", rolling(Circle(0.5), 0.5, 0.0, 0.0))  # On the left body's rim.
+    beside = Body("right", 1.0, 0.1, (1.0, 0.0, 0.0), (0.0, 0.5, 0.5))  # It moves as a part of the left body.
+    rim = Roll("rim", "left", "right", rolling(Circle(0.5), 0.5, 0.0, 0.0))  # The roll is on the left body's rim.
     wheel, axle = Body("left", 1.0, 0.1, (0.0, 0.3, 0.0)), Pin("hinge", None, "left", (0.0, 0.3), nowhere)
     level, upright = (
         Slot(name, None, "left", nowhere, line, nowhere) for name, line in (("x", 0.0), ("y", math.pi / 2))

@@ -1,7 +1,7 @@
 """Checks of a run: start, instants, CPU time, repeatability, and comparison with the exact motion.
 
-The comparison shows the instant to which a state belongs, the convergence order, the size of reactions, and whether
-force elements act.
+The comparison checks the instant of a state, the convergence order, the size of reactions, and the effect of force
+elements.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from reference.forces import Damper, Force, ForceElement, Spring, Torque, Torsio
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 
-# Relative rounding of the start, which is converted to the engine's coordinates and back.
+# Relative rounding of the start by the conversion to the engine's coordinates and back.
 START_ROUNDING = 1e-12
 CLOCK_RESOLUTION = 1e-4  # Resolution of an engine's clock of CPU time [s].
-COARSE_SAMPLING = (2, 3)  # Samples, and steps between them.
-# Relative difference of runs with the same steps: rounding, which extrapolation multiplies by up to 100.
+COARSE_SAMPLING = (2, 3)  # Number of samples, and of steps between samples.
+# Relative difference by rounding between runs with equal steps. Extrapolation multiplies rounding by up to 100.
 SAMPLING_TOLERANCE = 1e-9
-# Relative difference of reactions: an iterative solver begins with another guess, and single precision rounds the
+# Relative difference of reactions, since an iterative solver has another initial guess and single precision rounds
 # changes of velocities. A reaction that is divided by a wrong time differs by two thirds.
 REACTION_TOLERANCE = 1e-3
 
@@ -62,7 +62,7 @@ def samples_at_the_right_times(subject: CheckedEngine, world: World) -> None:
 def tells_the_cpu_time_of_stepping(subject: CheckedEngine, world: World) -> None:
     """`stepping` is CPU time from 0 to the CPU time of the whole run.
 
-    The CPU time of a child process is unknown here, but at most the elapsed time times the number of processors.
+    The CPU time of a child process is unknown, but it is at most the elapsed time times the number of processors.
     """
     run = subject.build(world.mechanism)
     in_child = subject.engine.steps_in_child
@@ -133,7 +133,7 @@ def sampling_changes_nothing(subject: CheckedEngine, world: World) -> None:
     """A run that records each third state has the same states as a run that records all, to rounding."""
     samples, every = COARSE_SAMPLING
     dense, sparse = subject.run(world.mechanism), subject.run(world.mechanism, CHECK_STEP, samples, every)
-    # A run claims no accuracy after `unresolved_at`, which may differ between the two.
+    # A run claims no accuracy after `unresolved_at`. The two runs may have different values.
     unresolved = min(math.inf if run.unresolved_at is None else run.unresolved_at for run in (dense, sparse))
     claimed = sparse.t < unresolved
     for name in ("pose", "twist", "reaction"):
@@ -152,18 +152,19 @@ def sampling_changes_nothing(subject: CheckedEngine, world: World) -> None:
 
 
 def does_not_wrap_angles(subject: CheckedEngine, world: World) -> None:
-    """Angles are not wrapped: they continue beyond a whole turn and may start several turns from zero."""
+    """Angles are not wrapped; they continue beyond a whole turn and may start several turns from zero."""
     run = finite(subject.run(world.mechanism))
-    error = _largest(run.pose[..., 2] - world.exact(run.t).pose[..., 2])  # 6.3 rad if an angle is wrapped
+    error = _largest(run.pose[..., 2] - world.exact(run.t).pose[..., 2])  # a wrapped angle differs by 6.3 rad
     means = "angles are those of a sine and a cosine"
     require(error <= 1.0, f"an angle that is {error:.3g} rad off", "at most 1 rad", means)
 
 
-SMALL_STEP = 1e-3  # [s] motions of a few rad/s are parabolas to within a percent over a few of these steps
+SMALL_STEP = 1e-3  # Step [s]; over a few steps, motions of a few rad/s are parabolas to within a percent.
 FIRST_STEPS = 3
-# In steps. The states of another instant are off by at least half a step, and the parabola by a hundredth.
+# In steps. States of another instant have a delay of at least half a step. The parabola has an error of a hundredth of
+# a step.
 MAX_DELAY = 0.1
-# Tolerance relative to the largest reaction. A wrong sign has an error of 2, and a first-order method below 0.1.
+# Tolerance relative to the largest reaction. A wrong sign causes an error of 2, a first-order method less than 0.1.
 REACTION_ERROR = 0.25
 
 
@@ -178,9 +179,9 @@ def twists_stand_at_their_instants(subject: CheckedEngine, world: World) -> None
 
 
 def _at_their_instants(subject: CheckedEngine, world: World, name: str, derivative: str) -> None:
-    """Fails if the delay exceeds MAX_DELAY, with the error fitted by derivative * (delay + constant * t).
+    """Fails if a fit of the error by derivative * (delay + constant * t) gives a delay above MAX_DELAY.
 
-    The error is projected on the motions that the joints allow: elsewhere it may be half a step in first order.
+    The error is projected on admissible motions, since other components of a first-order error may be half a step.
     """
     _declared_order(subject, world)
     run = finite(subject.run(world.mechanism, SMALL_STEP, FIRST_STEPS))
@@ -208,23 +209,24 @@ def twists_have_their_order(subject: CheckedEngine, world: World) -> None:
 
 
 def _declared_order(subject: CheckedEngine, world: World) -> ConvergenceOrder:
-    """The declared order; raises NotApplicable if there is none."""
-    subject.run(world.mechanism)  # raises Unsupported, since an engine declares no order of such a mechanism
+    """The declared order; raises NotApplicable if no order is declared."""
+    subject.run(world.mechanism)  # an unsupported mechanism has no declared order
     if isinstance(order := subject.engine.order(world.mechanism), NotDeclared):
         raise NotApplicable(f"no order is declared: {order.reason}")
     return order
 
 
 STEP_DIVISORS = (1, 3, 9)
-ORDER_SPACING, ORDER_SAMPLES = 0.02, 3  # [s] between samples, and their number.
-# Factor on the error that the order predicts from larger steps, for the next power of the step and the sampling.
+ORDER_SPACING, ORDER_SAMPLES = 0.02, 3  # Time between samples [s], and number of samples.
+# Factor on the predicted error from larger steps, for the next power of the step and for sampling.
 ORDER_MARGIN = 2.5
-# Relative error by rounding, or of a drive whose rate is held by an inertia 10^8 times the mechanism's.
+# Relative error by rounding, or by a drive with an inertia of 10^8 times the mechanism's.
 SMALLEST_ERROR = 1e-8
-# Roundings of an engine of lower precision that an error may have: about one in each of the steps of these checks adds
-# up to some, since they have either sign.
+# Largest error in roundings of an engine of lower precision. There is about one rounding per step, with either sign, so
+# they partly cancel.
 LOW_PRECISION_STEPS = 10
-# Gap over acceleration [s^2] of joints that count as rigid: at 10 m/s^2 the gap is 1 nm, below SMALLEST_ERROR.
+# Largest gap divided by acceleration [s^2] of a rigid joint. At 10 m/s^2 the gap is 1 nm, which is below
+# SMALLEST_ERROR.
 RIGID = 1e-10
 
 
@@ -250,15 +252,15 @@ def _has_its_order(subject: CheckedEngine, world: World, name: str, quantity: st
 
 
 def _has_constant_gap(subject: CheckedEngine, world: World) -> bool:
-    """Whether the declared gap of a joint, over the acceleration that it prevents, is not small and hardly falls."""
+    """Whether the declared gap of a joint per prevented acceleration is large and hardly falls with the step."""
     laws = [subject.engine.regularisation(world.mechanism, ORDER_SPACING / every) for every in STEP_DIVISORS[-2:]]
     coarse, fine = (0.0 if law is None else law.compliance / law.stiffness for law in laws)
     return fine > RIGID and fine * (STEP_DIVISORS[-1] / STEP_DIVISORS[-2]) > ORDER_MARGIN * coarse
 
 
 def reactions_have_sign_and_size(subject: CheckedEngine, world: World) -> None:
-    """Reactions are forces on the second body, with the sign and size of the exact ones."""
-    _declared_order(subject, world)  # a method that does not converge has another motion with other forces
+    """Reactions are forces on the second body, with the sign and size of the exact reactions."""
+    _declared_order(subject, world)  # a method that does not converge has another motion and other forces
     run = finite(subject.run(world.mechanism))
     exact = world.exact(run.t).reaction
     turning = world.mechanism.is_angular
@@ -267,7 +269,7 @@ def reactions_have_sign_and_size(subject: CheckedEngine, world: World) -> None:
         raise NotApplicable("the engine provides no reactions here")
     for row in np.flatnonzero(known):
         largest = np.max(np.abs(exact[:, turning == turning[row]]))
-        # The median, since a new contact may need some steps until it carries the weight.
+        # The median is used, since a new contact may need some steps until it carries the weight.
         error = np.nanmedian((run.reaction[:, row] - exact[:, row]) / largest)
         require(
             abs(error) <= REACTION_ERROR,
@@ -278,7 +280,7 @@ def reactions_have_sign_and_size(subject: CheckedEngine, world: World) -> None:
         )
 
 
-# Each force element acts alone on a plate on a pin, and changes its angular velocity much during the samples.
+# Each force element acts alone on a pinned plate, and changes the plate's angular velocity much during the samples.
 _PLATE = Body("plate", 2.0, 0.1, (0.0, 0.0, 0.3), (0.0, 0.0, 2.0))
 _HINGE = Pin("hinge", None, "plate", (0.0, 0.0), (0.0, 0.0))
 _FAR = ((1.0, -0.5), (0.2, 0.1))
@@ -290,7 +292,7 @@ FORCE_EXAMPLES: tuple[ForceElement, ...] = (
     TorsionSpring("torsion spring", None, "plate", 5.0, -1.0),
     TorsionDamper("torsion damper", None, "plate", 0.5),
 )
-FORCE_MARGIN = 0.2  # relative error of the change of the angular velocity; a first-order method has far less
+FORCE_MARGIN = 0.2  # relative error of the change; a first-order method has a far smaller error
 
 
 def feels_forces_or_refuses_them(subject: CheckedEngine) -> None:
@@ -317,7 +319,7 @@ def feels_forces_or_refuses_them(subject: CheckedEngine) -> None:
 
 
 def _change_of_rate(mechanism: Mechanism, until: float) -> float:
-    """The change of the plate's angular velocity up to the time `until` [rad/s], from its equation of motion."""
+    """The change [rad/s] of the plate's angular velocity up to the time `until`, from the equation of motion."""
     pose, twist = np.zeros((1, 3)), np.zeros((1, 3))
 
     def derivative(_: float, state: Array) -> list[float]:
@@ -328,7 +330,7 @@ def _change_of_rate(mechanism: Mechanism, until: float) -> float:
     return float(states[1, -1] - _PLATE.twist[2])
 
 
-# Mechanisms with a degree of freedom, and those of them that gravity accelerates.
+# Mechanisms with a degree of freedom, and the mechanisms among them that gravity accelerates.
 WITH_FREEDOM = tuple(world for world in MOVING if world.name != "driven crank")
 UNDER_GRAVITY = tuple(world for world in WITH_FREEDOM if world.name != "sleigh")
 CHECKS = tuple(

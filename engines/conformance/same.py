@@ -1,7 +1,7 @@
 """Checks that a motion does not depend on the description of the mechanism.
 
-A mechanism is rotated, shifted, mirrored, relabelled or reordered, or the bodies of its joints are swapped. The results
-must be the same after the change is undone.
+A mechanism is rotated, shifted, mirrored, relabelled or reordered, or the two bodies of its joints are swapped. After
+the inverse change the results must be equal.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Change = Callable[[Mechanism], Described]
 
 @dataclass(frozen=True)
 class Isometry:
-    """The world mirrored at the y axis (x -> -x) if `mirrored`, then turned by `turn` [rad], then shifted [m]."""
+    """A transformation of the world: mirror (x -> -x) if `mirrored`, then turn [rad], then shift [m]."""
 
     turn: float = 0.0
     shift: Vector = (0.0, 0.0)
@@ -51,7 +51,7 @@ class Isometry:
         return float(new[0]), float(new[1])
 
     def _inside(self, point: Vector) -> Vector:
-        """A point in a body's frame, which only the mirror image changes."""
+        """A point in a body's frame, which only `mirrored` changes."""
         return (-point[0], point[1]) if self.mirrored else point
 
     def _angle(self, angle: float) -> float:
@@ -85,7 +85,7 @@ class Isometry:
                         own[:, 2:] *= sense
                     case Drive() | Gear():
                         own *= sense
-                    case Roll():  # its boundaries are traversed the other way
+                    case Roll():  # a mirrored boundary has the opposite direction
                         own[:, 0] *= sense
                     case Slot() | Skate() | Rod():
                         pass
@@ -99,7 +99,7 @@ class Isometry:
         return changed, back
 
     def _joint(self, joint: Joint) -> Joint:
-        """The transformed joint. If the first body is the ground, its points and lines are transformed as well."""
+        """The transformed joint. Points and lines of the ground are transformed too."""
         ground = joint.first is None
         sense = -1.0 if self.mirrored else 1.0
         own_angle = self._angle if ground else (lambda angle: sense * angle)
@@ -166,7 +166,7 @@ def _undefined(word: str, element: Joint | ForceElement) -> ValueError:
 
 
 def _mirrored(curve: Curve, arc: float) -> tuple[Curve, float]:
-    """The curve after x -> -x, with its material on the left, and the arc length of the same point."""
+    """The curve after x -> -x with the material on the left, and the arc length of the same point."""
     match curve:
         case Circle() | Ring():
             x, y = curve.centre
@@ -182,7 +182,7 @@ def _mirrored(curve: Curve, arc: float) -> tuple[Curve, float]:
 
 
 def relabelled(mechanism: Mechanism) -> Described:
-    """Names with spaces and Cyrillic letters, whose alphabetical order is not that of the bodies and joints."""
+    """Other names with spaces and Cyrillic letters, in another alphabetical order."""
     names: dict[str | None, str] = {body.name: _named("тело", i) for i, body in enumerate(mechanism.bodies)}
     bodies = tuple(replace(body, name=names[body.name]) for body in mechanism.bodies)
     joints = tuple(
@@ -209,16 +209,16 @@ def bodies_reordered(mechanism: Mechanism) -> Described:
 
 
 def joints_reordered(mechanism: Mechanism) -> Described:
-    """Joints in reverse order, and with them the reactions."""
+    """Joints, and reactions, in reverse order."""
     changed = replace(mechanism, joints=mechanism.joints[::-1])
     place = [changed.row_names.index(name) for name in mechanism.row_names]
     return changed, lambda run: (run.pose, run.twist, run.reaction[:, place])
 
 
 def joints_swapped(mechanism: Mechanism) -> Described:
-    """Pins and drives with their bodies swapped, so that reactions have the other sign.
+    """Pins and drives with swapped bodies, so that reactions have the other sign.
 
-    The bodies of a slot, a skate or a roll have different roles and cannot be swapped.
+    The two bodies of a slot, a skate or a roll have different roles and cannot be swapped.
     """
 
     def swapped(joint: Joint) -> Joint:
@@ -239,15 +239,15 @@ def joints_swapped(mechanism: Mechanism) -> Described:
     return changed, lambda run: (run.pose, run.twist, run.reaction * signs)
 
 
-# Differences by rounding, relative to the largest value. A direct solver has 1e-13, an iterative solver more. Reactions
-# may be changes of velocities over a step.
+# Differences by rounding, relative to the largest value. Direct solvers have differences of 1e-13, iterative solvers
+# larger ones. Reactions may be changes of velocities over a step.
 DESCRIPTION_ROUNDING = {"pose": 1e-10, "twist": 1e-9, "reaction": 1e-6}
-# Largest difference in multiples of the error at this step. Two descriptions may have different errors, for example if
-# rounding decides whether two shapes touch, or if rows are solved one after the other. The difference is then at most
-# twice the error. The margin is for errors between samples.
+# Largest difference relative to the error at this step. Two descriptions may have different errors, for example if
+# rounding decides about a contact, or if rows are solved in sequence. The difference is then at most twice the error.
+# The margin is for errors between samples.
 ERROR_FACTOR = 3.0
-# The same for joints in another order. The convergence rate of Gauss-Seidel iterations depends on the matrix alone, but
-# the error after the first iteration depends on the order of the joints.
+# Largest difference relative to the error for joints in another order. The convergence rate of Gauss-Seidel iterations
+# depends only on the matrix, but the error after the first iteration depends on the order of the joints.
 REORDERED_FACTOR = 10.0
 
 
@@ -274,18 +274,18 @@ def same_if_relabelled(subject: CheckedEngine, world: World) -> None:
 
 
 def same_if_bodies_are_reordered(subject: CheckedEngine, world: World) -> None:
-    """With bodies in another order the motion is the same, with states in that order."""
+    """With bodies in another order the motion is the same, and states are in this order."""
     _same(subject, world, bodies_reordered, "states are in the order of the engine instead of the mechanism")
 
 
 def same_if_joints_are_reordered(subject: CheckedEngine, world: World) -> None:
-    """With joints in another order the motion is the same up to the error, with reactions in that order."""
+    """With joints in another order the motion is the same up to the error, and reactions are in this order."""
     means = "reactions are in the order of the engine, or only a tree is built"
     _same(subject, world, joints_reordered, means, REORDERED_FACTOR)
 
 
 def same_if_bodies_of_joints_are_swapped(subject: CheckedEngine, world: World) -> None:
-    """With the bodies of pins and drives swapped the motion is the same, with reactions of the other sign."""
+    """With swapped bodies of pins and drives the motion is the same, and reactions have the other sign."""
     means = "the ground, or the parent, is expected to be the first body of a joint"
     _same(subject, world, joints_swapped, means)
 

@@ -22,7 +22,7 @@ from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 
 G = 10.0  # m/s^2, downwards.
-MASS, INERTIA = 2.0, 0.3  # kg and kg m^2 of most bodies.
+MASS, INERTIA = 2.0, 0.3  # Mass [kg] and inertia [kg m^2] of most bodies.
 WEIGHT = MASS * G
 ORIGIN = (0.0, 0.0)
 
@@ -41,8 +41,8 @@ def world(
 ) -> World:
     """A world whose bodies start in the states at t = 0.
 
-    `states(t)`: for each body its position with two derivatives (complex), and its angle with two derivatives, as
-    numbers or arrays (times,). `reaction(t)`: reactions (rows, times); by default they follow from the accelerations.
+    `states(t)` returns position (complex) and angle of each body, each with two derivatives, as numbers or arrays
+    (times,). `reaction(t)` returns reactions (rows, times); by default they follow from the accelerations.
     """
 
     def motion(t: Array) -> WorldMotion:
@@ -121,7 +121,7 @@ def _swinging_parallelogram() -> World:
 
 
 def _driven_crank() -> World:
-    """A crank at a constant rate. The torque of the drive balances the weight's moment."""
+    """A crank at a constant rate; the drive's torque balances the moment of the weight."""
     arm, rate = 0.5, 3.0
 
     def states(t: Array) -> Any:
@@ -188,13 +188,13 @@ def _bead() -> World:
 
 
 def _trammel() -> World:
-    """A bar whose ends slide on two perpendicular lines. Its centre swings on a circle; the bar turns the other way."""
+    """A bar whose ends slide on two perpendicular lines; its centre swings on a circle, and the bar turns backwards."""
     half = 0.5
     frequency = math.sqrt(MASS * G * half / (MASS * half**2 + INERTIA))
 
     def states(t: Array) -> Any:
         angle, rate, change = swing(t, 0.7, 1.5, frequency)
-        # The end (half, 0) of the bar is on the x axis: the angle of the bar is minus the polar angle of its centre.
+        # The end (half, 0) of the bar is on the x axis, so the angle of the bar is minus the polar angle of its centre.
         return [(*round_about(half, angle - math.pi / 2, rate, change), math.pi / 2 - angle, -rate, -change)]
 
     joints = (
@@ -282,7 +282,7 @@ def _disc() -> World:
         turning = begin - distance / radius, -speed / radius, -pull / radius
         return [((distance + 1j * radius) * downhill, speed * downhill, pull * downhill, *turning)]
 
-    # The ground's arc length increases uphill, since its material is on the left. Friction points uphill too.
+    # The ground's arc length increases uphill, since its material is on the left. Friction also points uphill.
     joint = Roll("rim", None, "body", rolling(Line(math.pi - slope), radius, begin, 0.0))
     forces = [INERTIA * pull / radius**2, MASS * G * math.cos(slope)]
     return world("disc on a slope", (joint,), states, lambda t: forces)
