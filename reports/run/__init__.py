@@ -1,1 +1,1 @@
-"""Running cells and tasks in supervised workers or on a cluster, and storing their results."""
+"""Functions that run cells and tasks in supervised workers or on a cluster, and store the results."""

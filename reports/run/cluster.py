@@ -1,8 +1,8 @@
-"""Running items on a Dask cluster, with the same results as `supervise` on this machine.
+"""Functions that run items on a Dask cluster. The results are the same as those of `supervise` on this machine.
 
-A Dask task is a chunk of items, which a Dask worker runs in supervised processes, so that an engine that aborts does
-not end the Dask worker. Items are sent pickled, so that the scheduler does not import engines. Each item is sent with
-its key: a process that computes another key has other versions or files, and does not run the item.
+A Dask task is a chunk of items. A Dask worker runs the items in supervised processes, so an engine that aborts does not
+end the Dask worker. Items are sent pickled, so the scheduler does not import engines. An item is sent with its key. A
+process with other versions or files computes another key and does not run the item.
 """
 
 from __future__ import annotations
@@ -31,34 +31,34 @@ from reports.run.worker import process_start
 
 WORDS = re.compile(r"(?:tcp|tls)://\S+:\d+|local:([1-9]\d{0,2})")
 FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"
-ANSWERS_WITHIN = 10.0  # s for a scheduler to answer.
-WORKERS_WITHIN = 120.0  # s for the first worker to connect.
-CHUNK = 2.0  # Expected time of a chunk [s], much longer than sending it and starting its processes.
-_closing = threading.Event()  # Set when the client has ended: threads of local workers then end their processes.
+ANSWERS_WITHIN = 10.0  # Longest time until a scheduler answers [s].
+WORKERS_WITHIN = 120.0  # Longest time until the first worker connects [s].
+CHUNK = 2.0  # Expected time of a chunk [s]. It is much longer than the time to send it and to start processes.
+_closing = threading.Event()  # Set when the client has ended, so that local workers end their processes.
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """An item that was not run, since the worker computes another key; `versions`: the worker's `versions_of`."""
+    """The answer for an item that was not run because the worker has other versions, which are in `versions`."""
 
     versions: dict[str, str]
 
 
 @dataclass(frozen=True)
 class Workforce:
-    """The function that runs items, here or on a cluster, and the number of items that run at the same time."""
+    """The function that runs items, and the number of items that run at the same time."""
 
     threads: int
     supervise: Supervise = supervise
 
 
 def pool(workers: int | None) -> Workforce:
-    """Workers on this machine, one per processor if None."""
+    """Workers on this machine, by default one per processor."""
     return Workforce(workers or worker_count())
 
 
 def chunks(items: Iterable[Any]) -> list[list[Any]]:
-    """Items in their order, as many together as are expected to take CHUNK seconds."""
+    """Divide the items, in their order, into chunks with an expected time of CHUNK seconds."""
     out: list[list[Any]] = []
     remaining = 0.0
     for item in items:
@@ -72,19 +72,19 @@ def chunks(items: Iterable[Any]) -> list[list[Any]]:
 
 
 def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_key: bytes) -> Any:
-    """In a worker process: the result of a pickled (item, key), or a Refusal; `paths`: the client's sys.path."""
+    """The result of a pickled (item, key), or a Refusal. It runs in a worker process. paths: sys.path of the client."""
     sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
     try:
         item, key = pickle.loads(item_and_key)
     except (ImportError, AttributeError) as error:
         return Refusal({"what it would run": describe(error)})
-    if key is not None and replace(item).key != key:  # a copy has no key yet
+    if key is not None and replace(item).key != key:  # The copy has no cached key.
         return Refusal(versions_of(item))
     return function(item)
 
 
 def run_chunk(data: bytes) -> bytes:
-    """In a Dask worker: the pickled answers (index of the item, result or Loss, note) to a pickled chunk."""
+    """The pickled answers (index of the item, result or Loss, note) to a pickled chunk. It runs in a Dask worker."""
 
     def end_when_closing(running: list[Any]) -> None:
         if _closing.is_set():
@@ -100,7 +100,7 @@ def run_chunk(data: bytes) -> bytes:
 
 @contextmanager
 def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
-    """Connect to the cluster that `--scheduler` names, or None without one. Raises BadInput."""
+    """Connect to the cluster that `--scheduler` names. Yields None without a cluster. Raises BadInput."""
     if scheduler is None:
         yield None
         return
@@ -113,13 +113,13 @@ def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
         raise BadInput(
             f"--scheduler is {scheduler!r}, which needs Dask, and it is not installed: pip install '.[cluster]'"
         ) from None
-    for name in ("distributed", "tornado"):  # errors of workers are reported in rows, so their logs are not needed
+    for name in ("distributed", "tornado"):  # Rows report errors of workers.
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         try:
-            with process_start():  # the started processes ignore Ctrl-C; this process handles it
+            with process_start():  # Started processes ignore Ctrl-C, which this process handles.
                 where: Any = scheduler
-                if local_cluster[1]:  # threads: cells have processes of their own, all by one fork server
+                if local_cluster[1]:  # Dask uses threads, since cells run in further processes.
                     folder = str(stack.enter_context(temporary_folder()))
                     options: dict[str, Any] = {"processes": False, "threads_per_worker": 1, "memory_limit": None}
                     options |= {"local_directory": folder, "dashboard_address": "127.0.0.1:0"}
@@ -128,7 +128,7 @@ def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
                     stack.callback(_closing.set)
                 client = stack.enter_context(distributed.Client(where, timeout=ANSWERS_WITHIN, set_as_default=False))
                 client.wait_for_workers(1, timeout=WORKERS_WITHIN)
-        except OSError as error:  # a timeout is one too
+        except OSError as error:  # This includes timeouts.
             raise BadInput(
                 f"--scheduler is {scheduler!r}: no scheduler with workers answers there ({describe(error)[:200]}); "
                 "start them with: dask scheduler, dask worker"
@@ -146,9 +146,9 @@ def _supervise(
     watch: Watch | None = None,
     wall: float | None = None,
 ) -> Iterator[Answer]:
-    """Yield (item, result or Loss, note) as `supervise` does; the cluster has its own `workers`.
+    """Yield (item, result or Loss, note) like `supervise`. The number of workers is ignored.
 
-    Raises BadInput if a worker has other versions, WorkersLost if no worker is connected for WORKERS_WITHIN seconds.
+    Raises BadInput if a worker has other versions. Raises WorkersLost if no worker connects for WORKERS_WITHIN seconds.
     """
     parts = chunks(items)
     job = partial(run_item, function, tuple(filter(None, sys.path)))
@@ -174,7 +174,7 @@ def _supervise(
             if not done:
                 time.sleep(TICK)
     finally:
-        with suppress(Exception):  # nothing more is needed from the scheduler, so its errors do not matter
+        with suppress(Exception):  # Errors of the scheduler do not matter any more.
             client.cancel(futures, force=True)
 
 
@@ -185,7 +185,7 @@ def _threads(client: Any) -> int:
 
 
 def _answers(future: Any, count: int, scheduler: str) -> list[tuple[int, Any, str]]:
-    """The answers to a chunk of `count` items. Raises BadInput if a worker lacks this program."""
+    """The answers to a chunk of `count` items. Raises BadInput if this program is not installed on a worker."""
     try:
         return pickle.loads(future.result(timeout=ANSWERS_WITHIN))
     except (ImportError, AttributeError) as error:

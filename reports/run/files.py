@@ -1,4 +1,4 @@
-"""Writing files all or none, and temporary folders that are also removed after an interruption."""
+"""Functions that write all files or none, and temporary folders that are also removed after an interruption."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from pathlib import Path
 from reports.model.ending import FileTrouble
 
 PREFIX = ".crosscheck_"
-SOCKET_PATH = 104  # Bytes; every system accepts a shorter path of a socket.
-TRIES = 20  # Of removing a folder, since a process that is being killed may still write into it.
+SOCKET_PATH = 104  # Every system accepts paths of sockets with fewer bytes.
+TRIES = 20  # Number of attempts to remove a folder. A process that is being killed may still write into it.
 
-_folders: list[Path] = []  # the existing temporary folders of this process
+_folders: list[Path] = []  # The existing temporary folders of this process.
 
 
 @contextmanager
 def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
-    """A new folder in `parent`, or in the system's temporary folder, which is removed at the end. Raises OSError."""
+    """A context with a new folder, which is removed at the end. By default it is in the system's temporary folder."""
     folder = _new_folder(parent)
     try:
         yield folder
@@ -32,7 +32,7 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
 
 @cache
 def socket_folder() -> Path:
-    """A temporary folder for sockets; it is in /tmp if the path of the system's temporary folder is too long."""
+    """A temporary folder for sockets. If the path of the system's temporary folder is too long, it is in /tmp."""
     atexit.register(remove_all)
     folder = Path(tempfile.gettempdir())
     too_long = len(os.fsencode(folder)) + len(f"/{PREFIX}12345678.part/listener-12345678") >= SOCKET_PATH
@@ -40,7 +40,7 @@ def socket_folder() -> Path:
 
 
 def remove_all() -> None:
-    """Remove every temporary folder of this process, before a process exit that runs no cleanup."""
+    """Remove all temporary folders of this process. It is called before an exit without cleanup."""
     for folder in tuple(_folders):
         _remove(folder)
 
@@ -60,7 +60,7 @@ def _remove(folder: Path) -> None:
 
 
 def folder_for(path: Path, remedy: str) -> Path:
-    """Create the folder `path` and its parents, and return it. Raises FileTrouble, whose message ends in `remedy`."""
+    """Create the folder `path` and its parents. Raises FileTrouble with a message that ends in `remedy`."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
@@ -71,16 +71,16 @@ def folder_for(path: Path, remedy: str) -> Path:
 
 
 def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
-    """Write all files or none; symbolic links are replaced by files.
+    """Write all files or no file. Symbolic links are replaced by files.
 
-    The files are first written under temporary names, so that an error, such as a full disk, changes no old file. Only
-    a process killed during the renaming leaves a mixture of old and new files, all complete. Devices and pipes such as
-    /dev/stdout are written last. Raises FileTrouble, whose message ends in `remedy`.
+    The files are first written under temporary names, so an error, such as a full disk, changes no old file. If the
+    process is killed while files are renamed, old and new files remain, and all are complete. Devices and pipes such as
+    /dev/stdout are written last. Raises FileTrouble with a message that ends in `remedy`.
     """
     path = Path()
     try:
         with ExitStack() as stack:
-            asides: dict[Path, Path] = {}  # folder -> a temporary folder in it, so that renaming stays on one disk
+            asides: dict[Path, Path] = {}  # Folder -> a temporary folder in it, on the same disk.
             streams = [path for path in texts if is_stream(path)]
             for path in texts:
                 if path in streams:
@@ -98,13 +98,13 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
                 if path not in streams:
                     (asides[path.parent] / path.name).replace(path)
                     continue
-                with path.open("a", encoding="utf-8", newline="\n") as file:  # append: /dev/stdout may be a file
+                with path.open("a", encoding="utf-8", newline="\n") as file:  # /dev/stdout may be a file
                     file.write(texts[path])
     except OSError as reason:
         raise FileTrouble(f"{path} can't be written ({reason.strerror or reason}): {remedy}") from None
 
 
 def is_stream(path: Path) -> bool:
-    """Whether it is a device, a pipe or a link in /dev, which must be written to and not be replaced by a file."""
-    link = path.is_symlink() and path.absolute().is_relative_to("/dev")  # /dev/stdout may link to a file
+    """Whether the path is a device, a pipe or a link in /dev. A file must not replace it."""
+    link = path.is_symlink() and path.absolute().is_relative_to("/dev")  # /dev/stdout may link to a file.
     return link or (path.exists() and not path.is_file() and not path.is_dir())

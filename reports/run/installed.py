@@ -1,9 +1,9 @@
-"""Installs one version or build of an engine's package into a folder in the user's cache, outside this environment.
+"""Functions that install one version or build of a package into a folder in the user's cache.
 
     folder = installed(("mujoco-core", "mujoco"), "3.6.0")
     subprocess.run([sys.executable, "program.py"], env=environment(folder))
 
-The program then imports the package from that folder first. pip installs each version once, without its dependencies.
+The program then imports the package from that folder first. pip installs a version once, without its dependencies.
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ from reports.model.ending import BadInput
 from reports.model.fingerprint import digest
 from reports.run.files import folder_for, temporary_folder
 
-# With this name of the folder, `reports.model.fingerprint` identifies the modules in it by their version.
+# `reports.model.fingerprint` identifies modules in a folder with this name by their version.
 PACKAGES = "site-packages"
 VERSION = re.compile(r"[0-9][0-9A-Za-z.!+_-]*")
 OFFERED = re.compile(r"from versions: ([^)]*)\)")
 UNCONNECTED = ("NewConnectionError", "Name or service not known", "Failed to establish a new connection")
 OFFLINE = "no connection to a package index; with network it is installed once and kept"
-MOST_INSTALLED = 60  # Versions and builds that stay installed; no command uses more at once.
-MOST_SUGGESTED = 6  # Existing versions that an error message lists.
-# Without it, older versions of MuJoCo import their viewer, which needs further packages.
+MOST_INSTALLED = 60  # Largest number of installed versions and builds. No command uses more at once.
+MOST_SUGGESTED = 6  # Largest number of existing versions that an error message lists.
+# Without these variables, older versions of MuJoCo import their viewer, which needs further packages.
 WITHOUT_WINDOWS = {"MUJOCO_GL": "disable", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
 
 
 def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:
-    """Environment variables for a process that imports from `folder`, then `further`, and not from its own folder."""
+    """Environment variables for a process that imports first from `folder` and then from the folders `further`."""
     paths = os.pathsep.join(str(path) for path in (folder, *further))
     switches = {"PYTHONPATH": paths, "PYTHONSAFEPATH": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     return {**os.environ, **WITHOUT_WINDOWS, **switches}
 
 
 def installed(names: Sequence[str], version: str) -> Path:
-    """Install the version of the first distribution in `names` that has it, unless it is installed; its folder.
+    """Return the folder of a version, which is installed if necessary. The first distribution with this version counts.
 
     Raises BadInput if the version does not exist or has no wheel for this Python, or if there is no network.
     """
@@ -64,10 +64,10 @@ def installed(names: Sequence[str], version: str) -> Path:
 
 
 def built(path: Path) -> Path:
-    """Install a wheel or a folder of sources, which pip builds; return the folder of the installation.
+    """Install a wheel or a folder of sources and return the folder of the installation. pip builds the sources.
 
-    A folder without pyproject.toml and setup.py, such as one that `pip install --target` wrote, is returned itself. A
-    wheel is installed again if its content has changed, a folder of sources every time. Raises BadInput.
+    A folder without pyproject.toml and setup.py contains installed packages and is returned unchanged. A wheel is
+    installed again if its content has changed. A folder of sources is installed every time. Raises BadInput.
     """
     path = path.absolute()
     if path.is_dir():
@@ -86,7 +86,7 @@ def built(path: Path) -> Path:
 
 
 def sources(name: str, version: str, folder: Path, *options: str) -> Path:
-    """Download and unpack the source package of a version in `folder`; `options` of pip. Raises BadInput."""
+    """Download and unpack the source package of a version in `folder`. options: options of pip. Raises BadInput."""
     command = [sys.executable, "-P", "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
     command += ["--no-binary", name, f"{name}=={version}", "--dest", str(folder), *options]
     ended = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", errors="replace", check=False)
@@ -94,7 +94,7 @@ def sources(name: str, version: str, folder: Path, *options: str) -> Path:
     if ended.returncode or not archives:
         raise BadInput(f"pip could not fetch the source package of {name} {version}: {_reason(ended.stderr)}")
     with tarfile.open(archives[0], encoding="utf-8") as archive:
-        archive.extraction_filter = getattr(tarfile, "data_filter", None)  # Python before 3.11.4 has none
+        archive.extraction_filter = getattr(tarfile, "data_filter", None)  # absent before Python 3.11.4
         archive.extractall(folder)
     return folder / f"{name}-{version}"
 
@@ -105,7 +105,7 @@ def _place(name: str) -> Path:
 
 
 def _used(folder: Path) -> Path:
-    """Mark the folder as used now and return it; delete all but the MOST_INSTALLED most recently used versions."""
+    """Mark the folder as used and return it. Delete the least recently used versions above MOST_INSTALLED."""
     with suppress(OSError):
         os.utime(folder.parent)
         others = [each for each in (cache_folder() / "versions").glob("*/*") if not each.name.startswith(".")]
@@ -115,7 +115,7 @@ def _used(folder: Path) -> Path:
 
 
 def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
-    """Install into a temporary folder and rename it to `folder`. Returns pip's error output, empty after success."""
+    """Install into a temporary folder and rename it to `folder`. Return pip's errors, which are empty after success."""
     remedy = f"set {CACHE} to a folder that can be written"
     folder_for(folder.parent, remedy)
     try:
@@ -124,7 +124,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
             command = [sys.executable, "-P", "-m", "pip", "install", "--no-deps", "--no-compile", "--retries", "2"]
             command += ["--disable-pip-version-check", "--no-input", "--target", str(target)]
             command += ["--only-binary", ":all:"] if wheels_only else []
-            # Run in a temporary folder, since pip may leave files in its working folder.
+            # pip runs in a temporary folder, since it may leave files in its working folder.
             run = subprocess.run(
                 [*command, "--", what], capture_output=True, text=True, errors="replace", cwd=aside, check=False
             )
@@ -138,13 +138,13 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
     except OSError as error:
         raise BadInput(f"{folder} can't be written ({error.strerror or error}): {remedy}") from None
     finally:
-        with suppress(OSError):  # it is not empty if this or another process has installed the version
+        with suppress(OSError):  # The folder is not empty if a version is installed in it.
             folder.parent.rmdir()
     return ""
 
 
 def _reason(text: str) -> str:
-    """The last error that pip printed, else its last line; OFFLINE without a connection."""
+    """The last error or the last line that pip printed. OFFLINE if there is no connection."""
     if any(mark in text for mark in UNCONNECTED):
         return OFFLINE
     lines = [line.strip() for line in text.splitlines() if line.strip()]
@@ -153,7 +153,7 @@ def _reason(text: str) -> str:
 
 
 def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
-    """The error that no distribution has the version, with the nearest versions; `texts`: pip's output by name."""
+    """The error that no distribution has the version. It lists the nearest versions. texts: name -> pip's output."""
     names, reasons = " or ".join(texts), {name: _reason(text) for name, text in texts.items()}
     if set(reasons.values()) == {OFFLINE}:
         return BadInput(f"{names} {version} can't be fetched: {OFFLINE}")
@@ -167,7 +167,7 @@ def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
 
 
 def nearest_versions(version: str, offered: Sequence[str]) -> list[str]:
-    """At most MOST_SUGGESTED of the offered versions, those around this one, in ascending order."""
+    """Up to MOST_SUGGESTED offered versions near this version, in ascending order."""
     ordered = sorted(offered, key=numbers)
     index = sum(numbers(other) < numbers(version) for other in ordered)
     low = max(0, min(index - MOST_SUGGESTED // 2, len(ordered) - MOST_SUGGESTED))
@@ -179,9 +179,9 @@ def numbers(version: str) -> tuple[int, ...]:
 
 
 def distributions_in(folder: Path) -> Mapping[str, str]:
-    """Name -> version of the distributions in a folder, from their metadata.
+    """Name -> version of a distribution in a folder, from the metadata.
 
-    The modules' own versions are not reliable: pymunk 7.0.0 reports 2.0.0.
+    Versions in modules are not reliable. For example, the module of pymunk 7.0.0 reports 2.0.0.
     """
     found = metadata.distributions(path=[str(folder)])
     return {name: distribution.version for distribution in found if (name := distribution.metadata["Name"])}

@@ -1,4 +1,4 @@
-"""Runs cells and tasks in supervised workers, and stores each result as soon as it arrives."""
+"""Functions that run cells and tasks in supervised workers, and store each result as soon as it arrives."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from reports.run.files import folder_for
 from reports.run.store import ELSEWHERE, Store
 from reports.run.supervisor import Supervise, Watch, WorkersLost, supervise
 
-TIME_LIMIT = 60.0  # s of CPU time for one cell; far above the cost limit of the grid, so only a hang reaches it.
-LEAST = 3e-3  # s that a cell takes besides stepping.
+TIME_LIMIT = 60.0  # Limit of CPU time for one cell [s]. Only a hang reaches it, since cells of the grid take far less.
+LEAST = 3e-3  # Time that a cell takes in addition to stepping [s].
 
 Item = TypeVar("Item", bound=Cell | Task)
 
@@ -33,14 +33,14 @@ def worker_count() -> int:
 
 
 def expected_seconds(item: Any) -> float:
-    """CPU seconds of one run, estimated by the formula of the engine or of the task."""
+    """CPU seconds of one run, estimated by the engine or the task."""
     return LEAST + (estimated_cost(item) if isinstance(item, Cell) else float(getattr(item, "cost", 0.0)))
 
 
 def longest_first(items: Iterable[Item]) -> list[Item]:
-    """Sort the scenes by their expected time, and the items of each scene likewise, the longest first.
+    """Sort the scenes, and the items of each scene, by their expected time in descending order.
 
-    The items of one scene stay together, since a worker caches exact motions. The last items are short, so the workers
+    The items of a scene stay together, since a worker caches exact motions. The last items are short, so all workers
     end at about the same time.
     """
     groups: dict[Any, list[Item]] = {}
@@ -60,16 +60,14 @@ def run_items(
     supervised: Supervise = supervise,
     truths: Path | None = None,
 ) -> Iterator[tuple[Item, Any]]:
-    """Yield each cell with its Measurement and each task with its Answer; they start in the order `longest_first`.
+    """Yield (cell, Measurement) and (task, Answer). Items start in the order of `longest_first`.
 
-    A lost item has an outcome and no numbers. `limit`, `wall` and WorkersLost: see `supervise`. `workers` is
-    `worker_count` if None. `timed`: repeat a cell for the smallest CPU time. `supervised`: the function that runs the
-    items. `truths`: a folder of exact motions that workers share (`reports.model.measure`).
+    A lost item has an outcome and no numbers. `supervise` describes `limit`, `wall` and WorkersLost. workers: by
+    default `worker_count()`. timed: whether a cell is repeated to measure the smallest CPU time. supervised: the
+    function that runs the items. truths: a folder of exact motions that workers share.
     """
     items = tuple(items)
-    for (
-        item
-    ) in items:  # cached in the item and pickled with it: each new worker would need half a second to read all sources
+    for item in items:  # The keys are cached, since every worker would need half a second to read all sources.
         _ = item.key, isinstance(item, Cell) and item.truth
     function, count = partial(work, timed, truths), workers or worker_count()
     for item, result, note in supervised(function, longest_first(items), limit, count, watch, wall):
@@ -87,13 +85,13 @@ def _result(item: Cell | Task, result: Any, note: str, limit: float) -> Measurem
 
 
 def run_cells(cells: Iterable[Cell], **terms: Any) -> Iterator[Measurement]:
-    """Yield the measurement of each cell; `terms` are keyword arguments of `run_items`."""
+    """Yield the measurement of each cell. terms: keyword arguments of `run_items`."""
     for _, row in run_items(cells, **terms):
         yield row
 
 
 def missing(items: Iterable[Item], store: Store, limit: float = TIME_LIMIT) -> tuple[Item, ...]:
-    """The cells and tasks that are not stored, or that timed out with a smaller limit [s]."""
+    """The cells and tasks that are not stored, or that have timed out with a smaller limit [s]."""
     items = tuple(items)
     cells = [item for item in items if isinstance(item, Cell)]
     tasks = [item for item in items if isinstance(item, Task)]
@@ -102,7 +100,7 @@ def missing(items: Iterable[Item], store: Store, limit: float = TIME_LIMIT) -> t
 
 
 def holds(result: Measurement | Answer, limit: float) -> bool:
-    """Whether a run with this limit [s] would give the stored result again."""
+    """Whether a run with this limit [s] would have the stored result."""
     return result.outcome != Outcome.LOST and (result.outcome != Outcome.TIMED_OUT or result.limit >= limit)
 
 
@@ -117,14 +115,14 @@ def run_into(
     timed: bool = True,
     supervised: Supervise = supervise,
 ) -> int:
-    """Run the missing items (all if fresh) and store each result as it arrives; return the number of items run.
+    """Run the missing items, or all items if `fresh` is true. Store the results and return the number of items run.
 
-    After an interruption the results so far are stored. If another program killed the process of an item, the item is
-    not stored, and WorkersLost is raised after all other items.
+    Results are stored as they arrive, also before an interruption. If another program kills the process of an item, the
+    item is not stored, and WorkersLost is raised after all other items.
     """
-    waiting = tuple(items) if fresh else missing(items, store, limit)  # an old row stays until the new one replaces it
+    waiting = tuple(items) if fresh else missing(items, store, limit)  # Old rows stay until new rows arrive.
     lost: list[str] = []
-    # An absolute path, since workers run in other folders.
+    # The path is absolute, since workers run in other folders.
     truths = folder_for(store.path.parent.resolve() / TRUTHS, ELSEWHERE) if waiting else None
     for item, result in run_items(waiting, limit, workers, watch, timed, None, supervised, truths):
         if result.outcome == Outcome.LOST:
@@ -140,7 +138,7 @@ def run_into(
 
 
 def support_of(cell: Cell) -> str:
-    """The engine's reason why it can't build a scene's mechanism; empty if it can."""
+    """The engine's reason why it can't build a scene's mechanism. Empty if it can build it."""
     from engines import Unsupported
 
     try:

@@ -1,4 +1,4 @@
-"""An SQLite file of results as JSON. Each result is stored as it arrives, so that a killed run can be continued."""
+"""An SQLite file of results as JSON. Results are stored as they arrive, so a killed run can be continued."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from reports.run.files import folder_for, temporary_folder
 
 SCHEMA = 2  # the file's `user_version`
 TABLES = {"results": "(key text primary key, row text not null)", "given": "(words text primary key)"}
-SQLITE_SUFFIXES = ("-wal", "-shm")  # Of SQLite's files beside the store; recent rows are only in the first.
-WAIT = 30.0  # s for another process that is writing.
-COPIES = 100  # Tries to copy a store while another process writes it.
+SQLITE_SUFFIXES = ("-wal", "-shm")  # SQLite's files beside the store. Recent rows are only in the -wal file.
+WAIT = 30.0  # Longest time to wait for another process that is writing [s].
+COPIES = 100  # Number of attempts to copy a store while another process writes it.
 ELSEWHERE = "give another folder with --results"
 PUT_ASIDE = "crosscheck run puts it aside and begins anew"
 IN_USE = f"another process is using it; wait for its end, or {ELSEWHERE}"
-# What the user can do, by the low byte of SQLite's error code.
+# Low byte of SQLite's error code -> remedy for the user.
 REMEDIES = {
     sqlite3.SQLITE_BUSY: IN_USE,
     sqlite3.SQLITE_LOCKED: IN_USE,
     sqlite3.SQLITE_FULL: "what it holds is kept; make room on the disk, then run again",
     sqlite3.SQLITE_IOERR: "what it holds is kept; see whether the disk is full or failing, then run again",
 }
-# SQLITE_ERROR is included: every statement here is valid, so that the schema in the file must be damaged.
+# SQLITE_ERROR means that the schema in the file is damaged, since all statements in this module are valid.
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_TOOBIG)
 
 Keyed = TypeVar("Keyed", Cell, Task)
@@ -47,11 +47,11 @@ Result = TypeVar("Result", Measurement, Answer)
 
 
 class Damaged(Exception):
-    """Why a store is damaged."""
+    """A store is damaged. The message is the reason."""
 
 
 class Store:
-    """Measurements by the keys of their cells, and answers by the keys of their tasks; a context manager.
+    """A context manager that stores measurements by the key of the cell, and answers by the key of the task.
 
     A row survives the end of the program once `put` has returned. A damaged file is renamed and replaced by a new one;
     `notice` then has a sentence about it. The constructor and all methods raise FileTrouble if the file can't be used.
@@ -99,7 +99,7 @@ class Store:
         self._put(row.key, json.dumps(asdict(row)))
 
     def put_answer(self, task: Task, answer: Answer) -> None:
-        """Store the answer to a task, replacing an older one."""
+        """Store the answer to a task. It replaces an older answer."""
         values = {name: value if isinstance(value, str) else _packed(value) for name, value in answer.values.items()}
         fields_of = {name: getattr(answer, name) for name in ("outcome", "sentence", "limit")}
         self._put(task.key, json.dumps({**fields_of, "values": values}))
@@ -114,7 +114,7 @@ class Store:
         raise FileTrouble(f"{self.path} was removed or replaced while it was written; run again, or {ELSEWHERE}")
 
     def save_references(self, words: Iterable[str]) -> None:
-        """Store references to scenes and engines that are not registered, for a report."""
+        """Store references to scenes and engines that are not registered. Reports need them."""
         with _file_trouble(self.path), self._connection:
             self._connection.executemany("insert or ignore into given values (?)", [(each,) for each in words])
 
@@ -123,11 +123,11 @@ class Store:
             return tuple(words for (words,) in self._connection.execute("select words from given order by rowid"))
 
     def get(self, cells: Iterable[Cell]) -> dict[Cell, Measurement]:
-        """The stored rows of these cells, without those that were not run, are stale or can't be read."""
+        """The stored rows of these cells. Missing, stale and unreadable rows are left out."""
         return {cell: replace(row, purpose=cell.purpose) for cell, row in self._read(cells, row_of)}
 
     def answers(self, tasks: Iterable[Task]) -> dict[Task, Answer]:
-        """The stored answers to these tasks, without those that were not run, are stale or can't be read."""
+        """The stored answers to these tasks. Missing, stale and unreadable answers are left out."""
         return dict(self._read(tasks, answer_of))
 
     def _read(self, items: Iterable[Keyed], parse: Callable[[str], Result | None]) -> Iterator[tuple[Keyed, Result]]:
@@ -140,7 +140,7 @@ class Store:
 
 @contextmanager
 def _file_trouble(path: Path) -> Iterator[None]:
-    """Raise errors of SQLite and of the system as FileTrouble with a remedy."""
+    """A context that raises FileTrouble with a remedy instead of errors of SQLite and of the system."""
     try:
         yield
     except sqlite3.Error as error:
@@ -152,14 +152,14 @@ def _file_trouble(path: Path) -> Iterator[None]:
 
 
 def _connected(path: Path) -> sqlite3.Connection:
-    """A connection to a store, which is created if missing. Raises Damaged, FileTrouble and errors of SQLite."""
+    """A connection to a store. A missing store is created. Raises Damaged, FileTrouble and errors of SQLite."""
     beside = path.with_name(path.name + "-wal")
     if path.is_file() and not path.stat().st_size and beside.is_file() and beside.stat().st_size:
-        raise Damaged("it is empty, while rows lie beside it")  # SQLite would delete them
+        raise Damaged("it is empty, while rows lie beside it")  # SQLite would delete these rows.
     connection = sqlite3.connect(path, timeout=WAIT)
     connection.text_factory = lambda raw: raw.decode(errors="replace")
     try:
-        # With synchronous=full each row waits 5 to 10 ms for the disk, and meanwhile no worker gets a job.
+        # With synchronous=full each row would wait 5 to 10 ms for the disk. No worker would get a job meanwhile.
         connection.execute("pragma synchronous=normal")
         wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
         if wrong != "ok":
@@ -192,8 +192,8 @@ def _copy(path: Path, copy: Path) -> None:
     for _ in range(COPIES):
         before = path.stat()
         shutil.copyfile(path, copy)
-        # The -wal file only grows, and SQLite ignores an incomplete end of it. If SQLite moves rows from it into the
-        # store during the copy, the time or the size of the store changes.
+        # SQLite only appends to the -wal file, and ignores an incomplete end. If SQLite moves rows from this file into
+        # the store during the copy, the time or the size of the store changes.
         with suppress(FileNotFoundError):
             shutil.copyfile(f"{path}-wal", f"{copy}-wal")
         after = path.stat()
@@ -203,18 +203,18 @@ def _copy(path: Path, copy: Path) -> None:
 
 
 def _put_aside(path: Path) -> Path:
-    """Rename a damaged store and SQLite's files beside it; return the new path."""
+    """Rename a damaged store and SQLite's files beside it. Return the new path of the store."""
     number = 1
     while any(path.with_name(f"{path.name}.damaged-{number}{end}").exists() for end in ("", *SQLITE_SUFFIXES)):
         number += 1
     aside = path.with_name(f"{path.name}.damaged-{number}")
-    for end in (*SQLITE_SUFFIXES, ""):  # the store last, since SQLite deletes a -wal file that has no store
+    for end in (*SQLITE_SUFFIXES, ""):  # The store is last, since SQLite deletes a -wal file without a store.
         with suppress(FileNotFoundError):
             path.with_name(path.name + end).rename(f"{aside}{end}")
     return aside
 
 
-@lru_cache(maxsize=8192)  # a command reads a row several times, for missing cells, tables and pages
+@lru_cache(maxsize=8192)  # A command reads a row several times.
 def row_of(text: str) -> Measurement | None:
     try:
         values = json.loads(text)

@@ -1,15 +1,15 @@
-"""Supervision of worker processes, so that a crash in native code is a result of one item and nothing more.
+"""Supervision of worker processes. A crash in native code affects only the result of one item.
 
-In pebble, loky and concurrent.futures the workers share a queue with a lock: a worker that is killed while it holds the
-lock stops all workers, and limits count wall time only. Here each worker has its own connection, and a job counts as
-run only if its complete answer has arrived.
+In pebble, loky and concurrent.futures the workers share a queue with a lock. A worker that is killed while it holds the
+lock stops all workers. Limits apply only to wall time there. In this module each worker has a separate connection, and
+a job counts as run only if its complete answer has arrived.
 
-* If a worker ends while it starts, no item is affected; after several such failures in a row `WorkersLost` is raised.
-* If a worker ends during an item, the item is tried once more in a new worker, and the outcome of the second try is its
-  answer. So an item is not blamed for damage by an earlier item in the same process.
-* This process ends an item that exceeds its CPU time, by the clock of the worker; a thread in the worker does it if the
-  system does not provide that clock. An item that sleeps is ended after a much longer wall time, which counts only
-  while this process is awake. So neither a loaded machine nor a stopped terminal changes a result.
+* If a worker ends while it starts, no item is affected. After several such failures in a row `WorkersLost` is raised.
+* If a worker ends during an item, a new worker runs the item again, and the second outcome counts. So damage by an
+  earlier item in the same process does not affect the outcome.
+* This process ends an item that exceeds its CPU time, by the clock of the worker. If the system does not provide that
+  clock, a thread in the worker ends the item. An item that sleeps is ended after a much longer wall time. Wall time
+  counts only while this process is awake. So neither a loaded machine nor a stopped terminal changes a result.
 """
 
 from __future__ import annotations
@@ -39,31 +39,31 @@ from reports.run.worker import (
     start_worker,
 )
 
-TICK = 0.2  # s between two readings of the clock.
-IMPORTS = 2.0  # s of CPU time for importing an engine, which a worker does when it gets its first job.
-START_LIMIT = 120.0  # s of wall time until a worker is ready.
-MOST_FAILED_STARTS = 5  # In a row.
-PAUSE = 0.1  # s after a failed start, times the number of failed starts in a row.
-MOST_WORKERS = 60  # Since Windows can wait for at most 63 handles.
+TICK = 0.2  # Time between two readings of the clock [s].
+IMPORTS = 2.0  # CPU time for the import of an engine [s]. A worker imports it when it gets its first job.
+START_LIMIT = 120.0  # Longest wall time until a worker is ready [s].
+MOST_FAILED_STARTS = 5  # Largest number of failed starts in a row.
+PAUSE = 0.1  # Pause after a failed start [s]. It is multiplied by the number of failed starts in a row.
+MOST_WORKERS = 60  # Windows can wait for at most 63 handles.
 
 Watch = Callable[[list[Any]], None]
 Answer = tuple[Any, Any, str]
-Supervise = Callable[..., Iterator[Answer]]  # `supervise`, or the same with workers of a cluster
+Supervise = Callable[..., Iterator[Answer]]  # `supervise`, or a function with the same result on a cluster.
 
 
 class WorkersLost(Broken):
-    """Another program killed the workers; the remaining items can be run later."""
+    """Another program has killed the workers. The remaining items can be run later."""
 
 
 @dataclass
 class Job:
     item: Any
-    earlier: str = ""  # How the worker of the first try ended; empty before a second try.
-    earlier_outside: bool = False  # Whether another program killed that worker.
+    earlier: str = ""  # How the worker of the first try ended. Empty during the first try.
+    earlier_outside: bool = False  # Whether another program killed the worker of the first try.
 
 
 def wall_limit(limit: float) -> float:
-    """Wall time [s] for `limit` seconds of CPU time; it allows for a machine that is ten times overloaded."""
+    """Limit of wall time [s] for a limit of CPU time [s]. It allows for a machine that is ten times overloaded."""
     return 10 * limit + 60
 
 
@@ -75,11 +75,11 @@ def supervise(
     watch: Watch | None = None,
     wall: float | None = None,
 ) -> Iterator[Answer]:
-    """Yield (item, result or Loss, note) in the order of completion; note: how the first try aborted.
+    """Yield (item, result or Loss, note) in the order of completion. The note says how a first try has aborted.
 
-    `function` must be importable. `limit`: CPU seconds for an item, the sum over all threads; `wall`: seconds for an
-    item that sleeps, `wall_limit` if None. `watch` is called a few times a second with the running items. Raises
-    WorkersLost if no worker can be started. Closing the iterator ends the workers.
+    `function` must be importable. limit: CPU seconds of all threads for an item. wall: seconds for an item that sleeps,
+    by default `wall_limit`. `watch` is called a few times a second with the running items. Raises WorkersLost if no
+    worker can be started. The workers end when the iterator is closed.
     """
     one_thread_each()
     with temporary_folder() as folder:
@@ -92,14 +92,14 @@ def supervise(
 
 
 class Pool:
-    """Workers, and the jobs without an answer; `terms`: folder, CPU seconds and wall seconds of a job."""
+    """The workers and the jobs without an answer. terms: folder, CPU seconds and wall seconds of a job."""
 
     def __init__(
         self, function: Callable[[Any], Any], items: Iterable[Any], terms: tuple[str, float, float], most: int
     ) -> None:
         self._function, self._terms, self._most = function, terms, most
         self._waiting = deque(Job(item) for item in items)
-        self._retries: deque[Job] = deque()  # each is assigned to a new worker
+        self._retries: deque[Job] = deque()  # These jobs are assigned to new workers.
         self._workers: list[Worker] = []
         self._failed_starts = 0
         self._context = start_method()
@@ -136,14 +136,14 @@ class Pool:
             try:
                 with process_start():
                     self._workers.append(start_worker(self._context, *self._terms))
-            except (OSError, EOFError) as error:  # the fork server was killed, or the system has no room for a process
+            except (OSError, EOFError) as error:  # The system could not start a process.
                 self._on_failed_start(describe(error))
 
     def _on_failed_start(self, words: str) -> None:
         self._failed_starts += 1
         if self._failed_starts >= MOST_FAILED_STARTS:
             raise WorkersLost(f"{self._failed_starts} worker processes in a row ended while they started: {words}")
-        # A killed fork server is replaced only after its process has ended; a full system may have room later.
+        # A killed fork server is replaced only after its process has ended. A full system may start a process later.
         time.sleep(PAUSE * self._failed_starts)
 
     def _assign_job(self, worker: Worker) -> Iterator[Answer]:
@@ -161,7 +161,7 @@ class Pool:
             return
         worker.job, worker.used, worker.awake = job, True, 0.0
         worker.cpu = cpu_time(worker.process.pid or 0)
-        with contextlib.suppress(OSError):  # the worker has ended: `_on_message` handles it
+        with contextlib.suppress(OSError):  # If the worker has ended, `_on_message` handles it.
             worker.connection.send_bytes(data)
 
     def _on_message(self, worker: Worker) -> Iterator[Answer]:
@@ -185,7 +185,7 @@ class Pool:
         yield job.item, result, "" if job.earlier_outside else job.earlier
 
     def _on_exit(self, worker: Worker) -> Iterator[Answer]:
-        """Handle a worker that has ended: try its job again unless this was the second try or the CPU time is spent."""
+        """Handle the end of a worker. Its job is tried again after a first try unless the CPU time is used up."""
         code, pid, job = worker.exit_code(), worker.process.pid, worker.job
         self._terminate(worker)
         folder, limit, _ = self._terms

@@ -1,7 +1,7 @@
-"""A worker: a process that runs jobs one after another, until a job changes the state of the process.
+"""A worker is a process that runs jobs one after another, until a job changes the state of the process.
 
-The functions before `work` run in the parent, `work` and the functions after it in the worker. This module imports no
-engine, so that workers start quickly also without a fork server.
+The functions before `work` run in the parent. `work` and the functions after it run in the worker. This module imports
+no engine, so workers start quickly also without a fork server.
 """
 
 from __future__ import annotations
@@ -30,27 +30,27 @@ from reports.model.ending import describe
 from reports.model.outcomes import Loss, Outcome, failure, out_of_time
 from reports.run.files import socket_folder
 
-# The keys of rows depend on the files that this module imports, and must not depend on all engines. So these two
-# modules, which import all engines, are imported by name at run time.
+# These modules import all engines. They are imported by name at run time, so that the keys of rows do not depend on all
+# engines.
 GUARD, REGISTRY = "planar_crosscheck", "engines.registry"
-IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # By the fork server, for all workers.
-PATIENCE = 30.0  # s to wait until a killed process has ended, which may have to write a core dump.
+IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # The fork server imports these modules for all workers.
+PATIENCE = 30.0  # Longest time until a killed process has ended [s]. It may write a core dump.
 READY = b"ready"
-SPENT = 152  # 128 + SIGXCPU: exit code of a worker that ends itself since its job has used up its CPU time.
-SAFE_PATH = "PYTHONSAFEPATH"  # Any value keeps Python from adding the current folder to sys.path.
-OURS = "crosscheck"  # The value set here; workers remove it, so that processes started by a job do not inherit it.
+SPENT = 152  # 128 + SIGXCPU, the exit code of a worker that ends itself because its job has used up its CPU time.
+SAFE_PATH = "PYTHONSAFEPATH"  # With this variable, Python does not add the current folder to sys.path.
+OURS = "crosscheck"  # The value of this variable. Workers remove it, so that processes of jobs do not inherit it.
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2).
-CHECK_INTERVAL = 0.2  # s between two readings of the worker's own CPU time.
-# Starting a process polls all child processes and consumes the exit code of one that has ended. If several threads
-# supervise workers, it may be a worker of another thread.
+CHECK_INTERVAL = 0.2  # Time between two readings of the CPU time in a worker [s].
+# When a process is started, all child processes are polled. The exit code of an ended process is then consumed, even if
+# another thread supervises it.
 _reading = threading.Lock()
 
 
 def cpu_time(process: int) -> float | None:
     """CPU seconds of all threads of a process, or None if the system does not report them for another process.
 
-    The number of the clock on Linux is that of clock_getcpuclockid(3). A CPU timer (ITIMER_PROF, RLIMIT_CPU) would
-    reduce the resolution of this clock to 4 ms, and it also times the stepping, so none is set.
+    The number of the clock on Linux follows clock_getcpuclockid(3). No CPU timer (ITIMER_PROF, RLIMIT_CPU) is set,
+    since it would reduce the resolution of this clock to 4 ms. The same clock also times the stepping.
     """
     try:
         return time.clock_gettime((~process << 3) | 2)
@@ -59,7 +59,7 @@ def cpu_time(process: int) -> float | None:
 
 
 def stop_all() -> None:
-    """Kill every worker of this process, before a process exit that runs no cleanup."""
+    """Kill every worker of this process. It is called before an exit without cleanup."""
     for child in multiprocessing.active_children():
         _kill(child)
 
@@ -77,19 +77,19 @@ class Worker:
     connection: Connection
     ready: bool = False
     used: bool = False
-    job: Any = None  # A `supervisor.Job`; None while the worker is idle.
-    awake: float = 0.0  # s since its start or the start of its job, without times at which the parent was asleep.
-    cpu: float | None = None  # s of CPU time at the start of its job, or None if the system does not report it.
+    job: Any = None  # A `supervisor.Job`, or None while the worker is idle.
+    awake: float = 0.0  # Time since the start of the worker or of its job [s], while the parent was awake.
+    cpu: float | None = None  # CPU time at the start of the job [s], or None if the system does not report it.
 
     def used_cpu(self) -> float:
         now = cpu_time(self.process.pid or 0)
         return 0.0 if now is None or self.cpu is None else now - self.cpu
 
     def exit_code(self) -> int | None:
-        """The exit code; waits up to PATIENCE for the end. None if it is unknown or the process has not ended."""
+        """The exit code, after waiting up to PATIENCE. None if it is unknown or the process has not ended."""
         ended = wait([self.process.sentinel], PATIENCE)
         with _reading:
-            if ended:  # the sentinel of a spawned process is closed before the exit code is available
+            if ended:  # The sentinel of a spawned process is closed before the exit code is available.
                 self.process.join(PATIENCE)
             return self.process.exitcode
 
@@ -101,20 +101,20 @@ class Worker:
 
 
 def start_method(*modules: str) -> Any:
-    """The multiprocessing context: a fork server that imports these modules once, or spawn on other systems."""
+    """The multiprocessing context. It is a fork server that imports these modules, or spawn if there is none."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    # An interruption would not remove the standard library's own temporary folder.
+    # The standard library would create a temporary folder that is not removed after an interruption.
     vars(multiprocessing.current_process())["_config"].setdefault("tempdir", str(socket_folder()))
     context.set_forkserver_preload([*IMPORTED_ONCE, *modules])
     return context
 
 
 def start_early(*modules: str) -> None:
-    """Start the fork server, which imports these modules too, without waiting for it.
+    """Start the fork server without waiting for it. It also imports these modules.
 
-    Without a fork server each worker imports them, which is only slower.
+    Without a fork server each worker imports the modules, which is only slower.
     """
     if start_method(*modules).get_start_method() == "forkserver":
         from multiprocessing import forkserver
@@ -125,17 +125,17 @@ def start_early(*modules: str) -> None:
 
 
 def one_thread_each() -> None:
-    """Set BLAS to one thread: CPU time is the sum over all threads, and a waiting BLAS thread consumes CPU time."""
+    """Set BLAS to one thread. A waiting BLAS thread uses CPU time, which is the sum over all threads."""
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
 
 
 def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker:
-    """Start a process that runs `work` with these limits. Raises OSError or EOFError if none can be started."""
+    """Start a process that runs `work` with these limits. Raises OSError or EOFError if this is impossible."""
     ours, theirs = context.Pipe()
     process = context.Process(target=work, args=(theirs, folder, limit, wall), daemon=True)
     with theirs, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about a resource tracker killed in this moment
+        warnings.simplefilter("ignore")  # It may warn of a killed resource tracker.
         try:
             with _reading:
                 process.start()
@@ -147,16 +147,16 @@ def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker
 
 @contextmanager
 def process_start() -> Iterator[None]:
-    """Block Ctrl-C while a process starts, since it would print a traceback there and leave the process unsupervised.
+    """Block Ctrl-C while a process starts. It would print a traceback, and the process would not be supervised.
 
-    The started processes inherit the blocked signal. They are started by `python -c`, which would import modules from
-    the current folder first, so that PYTHONSAFEPATH is set.
+    The started processes inherit the blocked signal. `python -c` starts them and would import modules from the current
+    folder first, so PYTHONSAFEPATH is set.
     """
     is_set = SAFE_PATH in os.environ
     os.environ.setdefault(SAFE_PATH, OURS)
     before = None
     if hasattr(signal, "pthread_sigmask"):
-        # Starting the resource tracker unblocks Ctrl-C, so it is started before. It warns if the old one was killed.
+        # The resource tracker starts first, since its start unblocks Ctrl-C. It warns if its predecessor was killed.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             resource_tracker.ensure_running()
@@ -175,17 +175,17 @@ def last_words(folder: Path, pid: int | None) -> str:
         text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         first = next((at for at, line in enumerate(lines) if "abort" in line.lower() or "error" in line.lower()), 0)
-        # Chipmunk prints its reason and the failed condition below a line that ends with a colon.
+        # Chipmunk prints a line that ends with a colon, and below it the reason and the failed condition.
         count = 3 if lines and lines[first].endswith(":") else 1
         return " ".join(lines[first : first + count])[:300]
     return ""
 
 
-PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # whether the parent can read the CPU time of a worker
+PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # Whether the parent can read the CPU time of a worker.
 
 
 class CpuDeadline:
-    """The CPU time at which the current job is ended; infinite between jobs."""
+    """The CPU time at which the current job is ended. It is infinite between jobs."""
 
     def __init__(self) -> None:
         self.end = float("inf")
@@ -195,23 +195,23 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     """Answer jobs until the connection is closed, or until a job has changed the state of the process.
 
     A job is a pickled (function, item). The answer is a pickled (whether this worker accepts another job, the pickled
-    result or Loss). `limit`: CPU seconds of one job. `wall`: seconds after which the parent ends the job; after twice
-    that time the worker ends itself, since the parent must have ended.
+    result or Loss). limit: CPU seconds of one job. wall: seconds after which the parent ends the job. After twice this
+    time the worker ends itself, since the parent must have ended.
     """
-    # Ctrl-C reaches every process of a terminal; only the parent handles it.
+    # Ctrl-C reaches all processes of a terminal, but only the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_SETMASK, ())
     if os.environ.get(SAFE_PATH) == OURS:
         del os.environ[SAFE_PATH]
     if hasattr(os, "setpgid"):
-        os.setpgid(0, 0)  # so that the worker and the processes of its jobs can be killed together
+        os.setpgid(0, 0)  # So the worker and the processes of its jobs can be killed together.
     _end_with_the_parent()
     try:
         _redirect(Path(folder))
-    except FileNotFoundError:  # the command was interrupted and has removed the folder
+    except FileNotFoundError:  # An interrupted command has removed the folder.
         os._exit(1)
-    # A folder that hides this package may have appeared since the parent's check.
+    # Since the check in the parent, a folder that hides this package may have been created.
     if hidden := import_module(GUARD).clash():
         print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
@@ -224,19 +224,19 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
             job = connection.recv_bytes()
         except (EOFError, OSError):
             break
-        os.ftruncate(2, 0)  # so that the log has only the output of this job
+        os.ftruncate(2, 0)  # So the log contains only the output of this job.
         stays, answer = _answer(job, clock, limit, wall)
-        if os.getpid() != number:  # this is a process that the job has forked; the worker itself answers
+        if os.getpid() != number:  # The job has forked this process. Only the worker answers.
             os._exit(0)
         connection.send_bytes(pickle.dumps((stays, answer)))
-    os._exit(0)  # sys.exit would wait for threads that a job has left running
+    os._exit(0)  # sys.exit would wait for threads that a job has started.
 
 
 def _end_with_the_parent() -> None:
-    """Ask Linux to kill this process when its parent, the fork server, ends.
+    """Request that Linux kills this process when the fork server ends, which is the parent.
 
     The thread `_watch` is not enough, since native code may hold the interpreter lock. The fork server ends with the
-    command if its workers have closed the pipe that keeps it running.
+    command after all workers have closed a pipe.
     """
     with suppress(ImportError, AttributeError, KeyError, OSError, TypeError):
         ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
@@ -248,17 +248,20 @@ def _end_with_the_parent() -> None:
 
 
 def _redirect(folder: Path) -> None:
-    """Change the working folder, and redirect the standard streams to a log, for the output of engines."""
+    """Change the working folder and redirect the output of engines to a log."""
     os.chdir(folder)
     log = os.open(f"{os.getpid()}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
-    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)  # temporary files of engines are deleted with this folder
+    tempfile.tempdir = os.environ["TMPDIR"] = str(folder)  # Files of engines are deleted with this folder.
     os.dup2(log, 1)
     os.dup2(log, 2)
     os.close(log)
 
 
 def _watch(clock: CpuDeadline) -> None:
-    """In a thread: end the process after its parent, or at the CPU deadline if the parent can't read the CPU time."""
+    """End the process when the parent has ended, or at the CPU deadline if the parent can't read the CPU time.
+
+    It runs in a thread.
+    """
     parent = multiprocessing.parent_process()
     assert parent is not None
     while parent.is_alive():
@@ -269,9 +272,9 @@ def _watch(clock: CpuDeadline) -> None:
 
 
 def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[bool, bytes]:
-    """(whether the state of the process is unchanged, the pickled result or Loss)."""
+    """Run a job; return (whether the state of the process is unchanged, the pickled result or Loss)."""
     try:
-        # This may import an engine, which does not count as CPU time or as a change of the process by the job.
+        # This may import an engine. The import does not count as CPU time of the job, or as a change of the process.
         function, item = pickle.loads(job)
     except BaseException as error:  # nothing was run
         return False, pickle.dumps(Loss(Outcome.LOST, f"a worker can't read it: {describe(error)}"))
@@ -281,22 +284,22 @@ def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[
             result = function(item)
         if time.process_time() - start > limit:
             result = out_of_time(limit)
-        # elsewhere=False: `compare` runs builds in other folders.
+        # `compare` runs builds in other folders, so elsewhere is False.
         if sentence := import_module(REGISTRY).mislabelled(elsewhere=False):
             result = Loss(Outcome.LOST, sentence)
         return _process_state() == before, pickle.dumps(result)
-    except BaseException as error:  # An exception of an engine is a result, also SystemExit and KeyboardInterrupt.
-        # The library of the engine may be in an inconsistent state, so this process gets no other job.
+    except BaseException as error:  # Any exception of an engine is a result, also SystemExit.
+        # The library of the engine may be in an inconsistent state, so this process gets no further job.
         return False, pickle.dumps(failure(error))
 
 
 @contextmanager
 def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
-    """Set a system timer, which ends the process even in native code that never returns to the interpreter."""
+    """Set a system timer. It ends the process even in native code that never returns to the interpreter."""
     clock.end = time.process_time() + limit
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # only if the parent has ended, which acts after `wall`
+        signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # The parent would act after `wall`.
     try:
         yield
     finally:
@@ -307,7 +310,7 @@ def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
 
 
 def _process_state() -> tuple[Any, ...]:
-    """The part of the process's state that a job may change; a worker with a changed state is replaced."""
+    """The state of the process that a job may change. A worker with a changed state is replaced."""
     try:
         folder = os.getcwd()
         streams = [(os.fstat(number).st_dev, os.fstat(number).st_ino) for number in (1, 2)]

@@ -1,1 +1,1 @@
-"""Comparison of released versions of engines; each has its own folder and runs in its own process."""
+"""Comparison of released versions of engines. Every version has a separate folder and runs in a separate process."""

@@ -22,13 +22,13 @@ from reports.versions.column import VersionColumn, VersionRequest, cells_of, col
 from reports.versions.comparison import RowComparison, compared
 
 STORE = "cells.sqlite"
-# Short scenes with all kinds of joints: a loop, free and driven, a slide, rolling contact, a skate and a chain.
+# Short scenes that together contain all kinds of joints.
 SCENES = ("driven_four_bar", "free_four_bar", "free_slider_crank", "rolling_ellipse", "sleigh", "pendulum_2")
-LONGEST_CELL = 1.0  # s by the engine's formula; a comparison leaves out longer cells
+LONGEST_CELL = 1.0  # A comparison leaves out cells with a longer estimated time [s].
 
 Done = Callable[[Measurement], None]
 Watch = Callable[[Sequence[str]], None]
-# (label, number of cells) -> a context with a function for each row, and one for the labels of running cells.
+# (label, number of cells) -> a context that yields two functions, one for rows and one for labels of running cells.
 Progress = Callable[[str, int], AbstractContextManager[tuple[Done, Watch]]]
 
 
@@ -42,7 +42,7 @@ class Build:
     label: str  # in tables
     engine: str
     location: Path
-    stored: bool  # whether its rows are stored: those of a version are, those of another build may change
+    stored: bool  # Whether rows are stored. Rows of a released version are, but another build may change.
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class BuildComparison:
 
     @property
     def complaint(self) -> str:
-        """A sentence if the second build is worse; empty otherwise."""
+        """A sentence if the second build is worse, else empty."""
         worse, grown = self.comparison.worse, self.comparison.grown
         if not (worse or grown):
             return ""
@@ -76,11 +76,11 @@ def compare_builds(
     progress: Progress = no_progress,
     announce: Callable[[str], None] = lambda word: None,
 ) -> BuildComparison:
-    """Run the scenes (SCENES if None) in two builds, each NAME==VERSION, a wheel, or a folder with a build.
+    """Run scenes in two builds and compare the rows. A build is NAME==VERSION, a wheel, or a folder.
 
-    engine: a name or a reference; if None, the engine that needs the packages of the builds. results: the folder of the
-    store for rows of released versions. `announce` is called with the name of each build before pip runs. Raises
-    BadInput.
+    engine: a name or a reference, by default the engine that needs the packages of the builds. scenes: by default
+    SCENES. results: folder of the store for rows of released versions. `announce` is called with the name of each build
+    before pip runs. Raises BadInput.
     """
     engines = (*VARIANTS, *OTHERS) if engine is None else engines_named(engine)
     a, b = (side_of(word, engine, engines, announce) for word in (first, second))
@@ -117,7 +117,7 @@ def run_release(
     announce: Callable[[str], None] = lambda word: None,
     **terms: Any,
 ) -> VersionColumn:
-    """Run scenes in a release of an engine, which is installed if necessary. `terms`: fields of VersionRequest.
+    """Run scenes in a release of an engine, which is installed if necessary. terms: fields of VersionRequest.
 
     Raises BadInput if the release does not exist.
     """
@@ -160,7 +160,7 @@ def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: 
         if not contents:
             raise BadInput(f"{word} holds no package; give NAME==VERSION, a wheel or a folder with one")
         raise BadInput(f"{word} holds {', '.join(contents[:5])}, which no engine needs; name the engine with --engine")
-    # The name of a wheel repeats its contents, with forty characters about platforms.
+    # The name of a wheel would be too long for a label.
     label = "wheel" if Path(word).suffix == ".whl" else Path(word).absolute().name
     if versions:
         label = f"{', '.join(f'{package} {number}' for package, number in versions.items())} ({label})"

@@ -1,4 +1,4 @@
-"""The releases that `--all` compares, with their known changes, and the distributions of each engine."""
+"""The releases that `--all` compares, their known changes, and the distributions of engines."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class NamedRelease:
     source: str = ""  # The address of a page about the change.
 
 
-# About one release of each minor series, and all releases with a known change, oldest first.
+# About one release of each minor series, and all releases with a known change, in ascending order.
 RELEASES = (
     NamedRelease("mujoco", "3.3.0"),
     NamedRelease("mujoco", "3.3.7"),
@@ -55,10 +55,10 @@ RELEASES = (
     NamedRelease("pymunk", "7.3.1"),
 )
 
-# The release of MuJoCo with which a step as shipped needs more CPU time, measured once beside 3.3.0 (see the page).
+# Since this release of MuJoCo a step with default settings needs more CPU time than in 3.3.0.
 COST_ROSE_IN = "3.3.1"
 
-# Former names of distributions, the newest first.
+# Distribution -> its former names, the newest name first.
 FORMERLY: Mapping[str, tuple[str, ...]] = {"mujoco-core": ("mujoco",)}
 
 
@@ -68,13 +68,13 @@ def compared_versions() -> dict[str, tuple[str, ...]]:
 
 
 def changes_between(engine: str, before: str, after: str) -> tuple[NamedRelease, ...]:
-    """Releases with a known change that are newer than `before` and not newer than `after`."""
+    """Releases with a known change after the version `before`, up to and including `after`."""
     changed = [release for release in RELEASES if release.engine == engine and release.changed]
     return tuple(release for release in changed if numbers(before) < numbers(release.version) <= numbers(after))
 
 
 def engines_named(word: str) -> tuple[Engine, ...]:
-    """The engines with a name, or of a reference. Raises BadInput."""
+    """The engines with this name, or the engines of a reference. Raises BadInput."""
     if is_reference(word):
         try:
             return load(word)
@@ -87,12 +87,12 @@ def engines_named(word: str) -> tuple[Engine, ...]:
 
 
 def distributions(engine: Engine) -> tuple[str, ...]:
-    """The distributions that contain the engine, each newest name first."""
+    """The distributions of an engine. The newest name of a distribution comes first."""
     return tuple(name for package in engine.packages for name in (package, *FORMERLY.get(package, ())))
 
 
 def engine_of(engines: Sequence[Engine], names: Sequence[str]) -> Engine | None:
-    """The first engine that is or needs one of these distributions or modules."""
+    """The first engine that has one of these names, or needs a distribution or module with such a name."""
     wanted = {normalised(name) for name in names}
     for engine in engines:
         if wanted & {normalised(name) for name in (engine.name, *distributions(engine))}:

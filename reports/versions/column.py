@@ -1,4 +1,4 @@
-"""The rows of one version, computed in a process that has the version's folder first on its path."""
+"""The rows of one version. A process computes them with the version's folder first in sys.path."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from reports.versions.trees import Trees, engines_for_trees
 
-MARK = "known to be wrong"  # Our adapters write it into the sentence of each row of a faulty release.
-# Python's exceptions for a missing name: our adapter uses one that this version lacks.
+MARK = "known to be wrong"  # Our adapters write these words into the sentence of each row of a faulty release.
+# Python raises these exceptions if our adapter uses a name that does not exist in this version.
 LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
-LONGEST_LAST_LINE = 300  # characters of the last line that a process printed
+LONGEST_LAST_LINE = 300  # Largest number of characters from the last line that a process has printed.
 
 Watch = Callable[[Sequence[str]], None]
 
@@ -45,8 +45,8 @@ class VersionRequest:
     store: Path
     variants: tuple[str, ...] = ()  # All if empty.
     every: tuple[int, ...] = (10,)  # Steps between samples.
-    most: float = float("inf")  # s; a cell is left out if it takes longer by its engine's formula.
-    trees: bool = False  # Whether the random trees are run too.
+    most: float = float("inf")  # Longest estimated time of a cell [s]. Longer cells are left out.
+    trees: bool = False  # Whether random trees are run too.
     fresh: bool = False  # Whether stored cells are run again.
     folder: Path = Path(".")
     limit: float = TIME_LIMIT
@@ -57,11 +57,11 @@ class VersionColumn:
     version: str
     rows: tuple[Measurement, ...]
     trees: tuple[tuple[Trees, Answer], ...] = ()
-    trouble: str = ""  # the reason why the version can't be used
+    trouble: str = ""  # The reason why the version can't be used.
 
     @property
     def mark(self) -> str:
-        """The sentence of a row that explains why this version is known to be wrong; empty for other versions."""
+        """A sentence that explains why this version is known to be wrong. Empty for other versions."""
         parts = (part for row in self.rows for part in row.sentence.split("; ") if MARK in part)
         return next(parts, "").removeprefix("ours: ")
 
@@ -73,11 +73,11 @@ def column(
     watch: Watch = lambda labels: None,
     done: Callable[[Measurement], None] = lambda row: None,
 ) -> VersionColumn:
-    """Run a version. Rows report a failure of its process.
+    """Run a version. If its process fails, the rows report this.
 
-    engines: those of this process, for the rows of a version that can't be used. `watch` is called a few times a second
-    with the labels of running cells; if it raises, the process is ended, and the rows so far remain stored. `done` is
-    called with each row. Raises BadInput if the code and the metadata of the version have different version numbers.
+    engines: engines of this process, which are needed for the rows of a version that can't be used. `watch` is called a
+    few times a second with the labels of running cells. If it raises, the process is ended, and the stored rows remain.
+    `done` is called with each row. Raises BadInput if the code and the metadata have different version numbers.
     """
     rows: list[Measurement] = []
     trees: list[tuple[Trees, Answer]] = []
@@ -121,8 +121,8 @@ def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
 
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
-    """The messages of the process (`answer`), and a Loss if the process ended before its last message."""
-    with temporary_folder() as folder:  # files of engines are deleted with it; none of its files hides a module
+    """Yield the messages of the process (`answer`), and a Loss if the process ends before its last message."""
+    with temporary_folder() as folder:  # Files of engines are deleted with it.
         error_file = folder / "said.txt"
         with error_file.open("wb") as errors:
             process = subprocess.Popen(
@@ -154,9 +154,10 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
 
 
 def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
-    """In the process of a version: run the request; return the reason if the version can't be used, else None.
+    """Run the request in the process of the version. Return the reason if the version can't be used, else None.
 
-    `send` is called with each row, each (Trees, Answer), and a few times a second with the labels of running cells.
+    `send` is called with each row and each (Trees, Answer). A few times a second it is called with the labels of
+    running cells.
     """
     try:
         engines = _usable_engines(request)
@@ -188,7 +189,7 @@ def _usable_engines(request: VersionRequest) -> list[Engine]:
         raise ValueError(f"{cant}: {(reasons or ['it registers no engine'])[0]}")
     if engines[0].missing:
         raise ValueError(f"{cant}: {engines[0].missing}")
-    for module in engines[0].modules:  # an extra imports its modules only when it builds a model
+    for module in engines[0].modules:  # An extra imports modules only when it builds a model.
         try:
             import_module(module)
         except Exception as error:
@@ -197,7 +198,7 @@ def _usable_engines(request: VersionRequest) -> list[Engine]:
 
 
 def _imported_elsewhere(request: VersionRequest) -> str:
-    """A sentence if a module was not imported from this version's location; empty if all were."""
+    """A sentence if a module was not imported from the location of this version, else empty."""
     location, imported = request.location, [name for name in request.modules if name in sys.modules]
     for name in imported:
         file = getattr(sys.modules[name], "__file__", None)

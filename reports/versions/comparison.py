@@ -1,4 +1,4 @@
-"""Comparison of the rows of two versions of an engine, by the rule of the gate's baseline."""
+"""Comparison of the rows of two versions of an engine by the rules of `reports.gate.change`."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
 
-SAME_ORDER = 0.5  # a difference of observed orders up to this value is not reported
+SAME_ORDER = 0.5  # Smaller differences of observed orders are not reported.
 
 
 class Difference(NamedTuple):
-    """A quantity that differs by more than a factor of three between two rows, or a different outcome."""
+    """A quantity that differs by more than a factor of three between two rows, or an outcome that differs."""
 
     before: Measurement
     after: Measurement
@@ -32,7 +32,7 @@ class Difference(NamedTuple):
 
     @property
     def factor(self) -> float:
-        """The ratio of the larger value to the smaller one; infinite for an outcome."""
+        """The ratio of the larger value to the smaller value, or infinity for an outcome."""
         if self.quantity == "outcome":
             return math.inf
         low, high = sorted((getattr(self.before, self.quantity), getattr(self.after, self.quantity)))
@@ -40,7 +40,7 @@ class Difference(NamedTuple):
 
 
 class OrderChange(NamedTuple):
-    """A difference of the observed orders of the angle error of a method in a scene."""
+    """A difference between observed orders of the angle error, for a method in a scene."""
 
     scene: str
     method: str
@@ -50,7 +50,7 @@ class OrderChange(NamedTuple):
 
 @dataclass(frozen=True)
 class RowComparison:
-    """The comparison of (earlier row, later row) pairs, each of one cell."""
+    """The comparison of pairs (earlier row, later row). Both rows of a pair belong to the same cell."""
 
     pairs: tuple[tuple[Measurement, Measurement], ...]
 
@@ -64,7 +64,7 @@ class RowComparison:
 
     @cached_property
     def grown(self) -> tuple[Check, ...]:
-        """Failed checks of the errors of a method over all scenes."""
+        """Failed checks that the errors of a method have not grown over all scenes."""
         return tuple(
             check for check in growth((later, _old(earlier)) for earlier, later in self.pairs) if not check.passed
         )
@@ -107,7 +107,7 @@ class RowComparison:
 
     @property
     def chief(self) -> Difference:
-        """The largest difference among the worse ones, else among all; without any, the angle at the smallest step."""
+        """The largest difference. Differences for the worse come first. By default the angle at the smallest step."""
         if not self.differences:
             return Difference(*min(self.pairs, key=lambda pair: pair[1].step), "angle", False)
         return max(self.differences, key=lambda difference: (difference.worse, difference.factor))

@@ -1,4 +1,4 @@
-"""The table of released versions: an entry for each scene, method and version, and the changes between versions."""
+"""The table of released versions, with an entry for each scene, method and version, and the changes of versions."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from reports.versions.trees import Trees
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
-WRONG_TREE = 0.01  # Error relative to the largest acceleration above which a tree counts as wrong.
-# Relative error of accelerations below which the error of the finite difference and of the solver dominate.
+WRONG_TREE = 0.01  # A tree counts as wrong if its error, relative to the largest acceleration, is larger.
+# Smaller relative errors of accelerations may be due to the finite difference and the solver.
 ACCELERATION_ROUNDING = 1e-3
-SAME_COST = 0.1  # Relative difference of two CPU times that counts as noise.
+SAME_COST = 0.1  # A smaller relative difference of two CPU times counts as noise.
 LONGEST_SENTENCE = 200  # characters.
 
 
@@ -41,8 +41,8 @@ class Entry:
     quantity: str
     error: float  # Largest error of `quantity`, or NaN without a motion. In random trees it is relative.
     outcome: str
-    cpu: float  # s per simulated second, or NaN for random trees.
-    sentence: str  # The reason for a missing error; for random trees the number of wrong ones.
+    cpu: float  # CPU seconds per simulated second, or NaN for random trees.
+    sentence: str  # The reason for a missing error, or the number of wrong trees.
 
     @property
     def comparable(self) -> bool:
@@ -58,7 +58,7 @@ class Entry:
 
     @property
     def size(self) -> float:
-        """The error, at least the quantity's rounding; infinite without an error."""
+        """The error, or the rounding error of the quantity if this is larger. Infinite without an error."""
         rounding = ACCELERATION_ROUNDING if self.quantity == ACCELERATION else quantity(self.quantity).rounding
         return max(self.error, rounding) if self.comparable else math.inf
 
@@ -70,7 +70,7 @@ class Entry:
 @dataclass(frozen=True)
 class ReleaseTable:
     entries: tuple[Entry, ...]
-    marks: Mapping[tuple[str, str], str]  # (engine, version) -> why it is known to be wrong, or can't be used
+    marks: Mapping[tuple[str, str], str]  # (engine, version) -> why the version is wrong or can't be used.
 
     @property
     def engines(self) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ class ReleaseTable:
 
 
 def entries(engine: str, column: VersionColumn, quantities: Mapping[str, str]) -> list[Entry]:
-    """The entries of a version; `quantities`: scene -> the compared quantity, the angle for other scenes."""
+    """The entries of a version. quantities: scene -> compared quantity. For other scenes the angle is compared."""
     out = []
     for row in column.rows:
         name = quantities.get(row.scene, "angle")
@@ -106,7 +106,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
         wrong = sum(not miss <= WRONG_TREE for miss in misses)
         error = max((math.inf if math.isnan(miss) else float(miss) for miss in misses), default=math.nan)
         sentence = f"{wrong} of {len(misses)} by more than {WRONG_TREE:g}"
-    elif "Error: " in answer.sentence:  # Python's exception for a name that the version lacks
+    elif "Error: " in answer.sentence:  # The version lacks a name.
         outcome = Outcome.UNSUPPORTED
     scene = f"random trees ({trees.bodies} bodies, {trees.loops} loops)"
     method = (scene, trees.method.variant, math.nan, ACCELERATION)
@@ -114,7 +114,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
 
 
 def as_csv(table: ReleaseTable) -> str:
-    """The table as CSV: the marks as comments, then the sorted entries."""
+    """The table as CSV. The marks are comments, and the sorted entries follow."""
     out = io.StringIO()
     for (engine, version), mark in table.marks.items():
         out.write(f"# {engine} {version}: {mark}\n")
@@ -130,7 +130,7 @@ def _as_text(value: Any) -> str:
 
 
 def read(path: Path) -> ReleaseTable:
-    """Read the output of `as_csv`; an empty table if the file does not exist. Raises ValueError for another file."""
+    """Read the output of `as_csv`. If the file does not exist, the table is empty. Raises ValueError."""
     if not path.is_file():
         return ReleaseTable((), {})
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -147,7 +147,7 @@ def read(path: Path) -> ReleaseTable:
 
 @cache
 def released(path: Path = DATA) -> ReleaseTable:
-    """The table in a file, the published one by default, without versions that are no longer in RELEASES."""
+    """The table in a file, by default the published table. Versions that are not in RELEASES are left out."""
     compared, table = compared_versions(), read(path)
 
     def is_listed(engine: str, version: str) -> bool:
@@ -158,7 +158,7 @@ def released(path: Path = DATA) -> ReleaseTable:
 
 
 def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:
-    """The new entries, and the old entries of versions without new ones."""
+    """The new entries, and the old entries of versions without new entries."""
     renewed = {(entry.engine, entry.version) for entry in new.entries}
     remaining = tuple(entry for entry in old.entries if (entry.engine, entry.version) not in renewed)
     marks = {key: mark for key, mark in old.marks.items() if key not in renewed}
@@ -166,7 +166,7 @@ def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:
 
 
 def as_published(table: ReleaseTable, before: ReleaseTable) -> ReleaseTable:
-    """The entries, with the numbers of `before` where a difference is only rounding or noise of a CPU time."""
+    """The entries of `table`. A number that differs from `before` only by rounding or noise is taken from `before`."""
     published = {entry.identity: entry for entry in before.entries}
     renewed = tuple(_as_published(entry, published.get(entry.identity, entry)) for entry in table.entries)
     return ReleaseTable(renewed, table.marks)
@@ -184,9 +184,9 @@ def _as_published(now: Entry, before: Entry) -> Entry:
 
 
 def change(before: Entry, after: Entry) -> str:
-    """The change between two versions, or empty.
+    """The change between two versions. Empty if there is no change.
 
-    "better" and "WORSE" mean a factor of more than three; "other" means two different outcomes without an error.
+    "better" and "WORSE" mean a factor of more than three. "other" means two different outcomes without an error.
     """
     small, large = sorted((before.size, after.size))
     if small < large and (math.isinf(large) or large > WORSE * small):
@@ -197,7 +197,7 @@ def change(before: Entry, after: Entry) -> str:
 def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
     """(before, after, `change`) of successive versions that differ, for each scene and method.
 
-    Versions that do not support a scene are left out.
+    A version that does not support the scene is left out.
     """
     lines: dict[tuple[Any, ...], list[Entry]] = {}
     for entry in sorted(entries, key=lambda entry: entry.identity):
@@ -208,7 +208,7 @@ def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
 
 
 def relative_cost(entries: Iterable[Entry], versions: Sequence[str], variant: str) -> dict[str, float]:
-    """Version -> CPU time relative to the newest version: the median of the scenes that both have completed."""
+    """Version -> median ratio of its CPU times to those of the newest version, in scenes that both have completed."""
     timed = [entry for entry in entries if entry.variant == variant and entry.comparable and entry.cpu > 0]
     newest = {entry.scene: entry.cpu for entry in timed if entry.version == versions[-1]}
     ratios: dict[str, list[float]] = {version: [] for version in versions}

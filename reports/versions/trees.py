@@ -1,6 +1,6 @@
-"""Random branching chains of pin joints with closed loops: the error of an engine's accelerations at one instant.
+"""The error of an engine's accelerations in random trees of bodies with pin joints and closed loops.
 
-Accelerations have no error of time integration, so that they show a fault of a release alone.
+Accelerations have no error of time integration, so they show faults of a release.
 """
 
 from __future__ import annotations
@@ -20,31 +20,31 @@ from reports.model.tasks import Task, Values
 from reports.search.parts import Recipe, RecipeBody, RecipeLink
 from reports.search.recipe import build
 
-TREE_STEP = 1e-5  # Of the mechanism's time scale; the relative error of a finite difference is about as large.
-TREE_STEPS = 2  # Since the first step of a velocity-level solver lacks the velocity term of the joints.
+TREE_STEP = 1e-5  # Step relative to the mechanism's time scale. The relative error of finite differences is similar.
+TREE_STEPS = 2  # Two steps, since the first step of a velocity-level solver lacks the velocity term of the joints.
 TREE_SEED = 12
 
 
 def engines_for_trees(engine: str, variants: Sequence[Engine]) -> tuple[Engine, ...]:
-    """MuJoCo's variants, and one with the sparse factorisation, MuJoCo's default from 60 degrees of freedom on.
+    """MuJoCo's variants, and a variant with the sparse factorisation, which MuJoCo uses from 60 degrees of freedom on.
 
-    Without the default variant, whose joints are so soft that every tree is wrong. Empty for pymunk, which would need
-    too many iterations for these loops.
+    The default variant is left out, since every tree would be wrong with its soft joints. The result is empty for
+    pymunk, which would need too many iterations for these loops.
     """
     if engine != "mujoco":
         return ()
     from engines.mujoco.methods import EXTENDED
 
-    # Five iterations of Newton's method suffice; the tolerance is too small to stop them earlier.
+    # Five iterations of Newton's method suffice. The tolerance is so small that all five are made.
     newton = replace(EXTENDED, solvers=("Newton",), iterations=5, tolerance=1e-20)
     return (*variants[1:], replace(newton, variant="extended, sparse", jacobian="sparse"))
 
 
 @dataclass(frozen=True)
 class Trees(Task):
-    """`miss` of `count` random trees in an engine.
+    """The task that computes `miss` for `count` random trees in an engine.
 
-    Trees of 12 bodies can be analysed by hand, and one in ten shows the fault of MuJoCo 4.0.0 with sparse Jacobians.
+    Trees of 12 bodies can be analysed by hand. One tree in ten shows the fault of MuJoCo 4.0.0 with sparse Jacobians.
     """
 
     method: Engine
@@ -64,9 +64,9 @@ class Trees(Task):
 
 @lru_cache(maxsize=4)
 def trees(bodies: int, loops: int, count: int) -> tuple[Mechanism, ...]:
-    """Random trees: a pin connects each body to an earlier one or to the ground, and `loops` further pins close loops.
+    """Random trees. A pin connects each body to an earlier body or to the ground, and `loops` further pins close loops.
 
-    Lengths are about 1 m, masses 0.1 to 10 kg. A tree with nearly dependent rows is replaced by another one.
+    Lengths are about 1 m, and masses are 0.1 to 10 kg. Trees with nearly dependent rows are not used.
     """
     random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([TREE_SEED, bodies, loops])))
     drawn: list[Mechanism] = []
@@ -98,7 +98,7 @@ def _recipe(random: np.random.Generator, bodies: int, loops: int) -> Recipe:
 def miss(engine: Engine, mechanism: Mechanism) -> float:
     """The largest error of the mean accelerations in the last step, relative to the largest ideal acceleration.
 
-    Angular accelerations are multiplied by the length of the mechanism. NaN if a value is not finite.
+    Angular accelerations are multiplied by the length of the mechanism. The result is NaN if a value is not finite.
     """
     dt = TREE_STEP * mechanism.time_scale
     motion = engine.build(mechanism, dt)(TREE_STEPS, 1)
