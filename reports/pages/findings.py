@@ -152,17 +152,17 @@ class Finding:
 
 
 def error_at(rows: Rows, step: float, name: str) -> float:
-    """The error of a quantity at a step [s]; NaN if no row has this step. Failed runs count."""
+    """The error of a quantity at a step [s], or NaN if no row has this step. Failed runs count."""
     return next((error for row_step, error in rows.points(name) if is_step(row_step, step)), math.nan)
 
 
 def least(rows: Rows, name: str) -> float:
-    """The least error of a quantity; NaN without rows. Failed runs count."""
+    """The least error of a quantity, or NaN without rows. Failed runs count."""
     return min((error for _, error in rows.points(name)), default=math.nan)
 
 
 def duration(rows: Rows) -> float:
-    """The duration of the scene [s]; NaN without rows."""
+    """The duration of the scene [s], or NaN without rows."""
     return next((row.samples * row.every * row.step for row in rows), math.nan)
 
 

@@ -89,7 +89,7 @@ def configurations(
 
 
 def visibly_off(mechanism: Mechanism, truth: Array, pose: Array, size: float) -> bool:
-    """Whether the error of a joint point exceeds VISIBLE times `size` [m]; False if the pose is not finite."""
+    """Whether the pose is finite and the error of a joint point exceeds VISIBLE times `size` [m]."""
     if not np.isfinite(pose).all():
         return False
     first, second = body_points(mechanism, truth), body_points(mechanism, pose)

@@ -83,7 +83,8 @@ class Panel:
     logarithmic_across: bool = False
 
     def corners(self) -> tuple[Array, Array]:
-        """The lowest and highest coordinates of framed paths, blades and notes; MIN_ASPECT may add width."""
+        """The lowest and highest coordinates of framed paths, blades and notes; The width is at least MIN_ASPECT times
+        the height."""
         points = [path.finite() for path in self.paths if path.framed]
         points += [stroke for blades in self.blades for stroke in blades.strokes()]
         points += [np.array([note.point]) for note in self.notes]

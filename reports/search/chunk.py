@@ -133,7 +133,7 @@ def chunk_to_json(chunk: Chunk) -> str:
 
 
 def chunk_from_json(text: str, subjects: Sequence[Subject]) -> Chunk | None:
-    """The inverse of `chunk_to_json`; None if the subject is not among `subjects`."""
+    """The inverse of `chunk_to_json`, or None if the subject is not among `subjects`."""
     name, seed, first, count, kinds, decades, oracles = json.loads(text)
     subject = next((subject for subject in subjects if subject.name == name), None)
     return Chunk(subject, seed, first, count, tuple(kinds), decades, tuple(oracles)) if subject else None

@@ -249,7 +249,8 @@ class _Case:
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
         """Errors by a run of the judge with the regularisation that the engine declares at this step, and tolerances.
 
-        An error by a compliance that depends on the step has the declared order only if it is small. So the judge is
+        If the compliance depends on the step, its effect has the declared order only while the compliance is small. So
+        the judge is
         run with the same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of two changes
         of the judge's run.
         The first is the change with doubled steps, since the engine integrates other coordinates. The second is the

@@ -221,8 +221,8 @@ class StartEquations:
     """The equations of motion of a model at the start.
 
     `root` (coordinates, coordinates): a root S of the mass matrix S^T S. `free`: S times the accelerations without
-    equalities. `rows`: Jacobian J of each equality. `right`: J times the accelerations, for each equality. `bent`: the
-    part of `right` by the curve of an equality. `rates` (coordinates,): velocities that satisfy the equalities.
+    equalities. `rows`: Jacobian J of each equality. `right`: the product of J and the accelerations. `bent`: the part
+    of `right` that comes from the curve of an equality. `rates` (coordinates,): velocities that satisfy the equalities.
     """
 
     root: Array

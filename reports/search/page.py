@@ -41,7 +41,8 @@ ROW_INCHES = 0.24
 
 
 def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
-    """A line for each subject, from the median to the largest error of single instants; None without such errors."""
+    """A figure with a line for each subject from the median to the largest error of instants, or None without
+    errors."""
     errors_by_subject: dict[str, list[float]] = {}
     for case in cases:
         for law in LAW_CHECKS:

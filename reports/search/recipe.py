@@ -200,7 +200,7 @@ class Standing:
         return x + along * math.cos(line), y + along * math.sin(line)
 
     def _moved(self, body: int, place: Point, x: float, y: float) -> Vector:
-        """The coordinates [m] in a body's frame of the point `place` + (x, y) of the world."""
+        """The point `place` + (x, y) [m] of the world, in a body's frame."""
         local_x, local_y = self._local(body, place)
         more_x, more_y = components(-self._angle(body), x, y)
         return local_x + more_x, local_y + more_y
@@ -212,7 +212,7 @@ class Standing:
         return self.bodies[body - 1].pose[2] if body else 0.0
 
     def _local(self, body: int, point: Point) -> Vector:
-        """The coordinates [m] in a body's frame of a point of the world."""
+        """A point of the world in a body's frame [m]."""
         x, y = (float(point[axis] - self._places[body][axis]) for axis in (0, 1))
         return tuple(components(-self._angle(body), x, y))
 

@@ -119,7 +119,8 @@ def _check_in_other_release(version: str, model: str) -> dict[str, Any]:
 
 
 def release_of(name: str) -> str | None:
-    """The release in the name of a subject, "" for the installed release; None unless the subject is MuJoCo alone."""
+    """The release in a subject's name, which is "" for the installed release. None if the subject is not MuJoCo
+    alone."""
     name_parts = name.split()
     return " ".join(name_parts[2:]) if name_parts[:2] == ["mujoco", "alone"] else None
 

@@ -162,7 +162,7 @@ def visit_block(translator: Any, node: Any) -> None:
 
 
 def quote_section(app: Any, page: str, heading: str) -> str | None:
-    """The HTML of a section of a results page, with links for a page in another folder; None if the section is
+    """The HTML of a section of a results page, with links for a page in another folder, or None if the section is
     missing."""
     from docutils import nodes  # pyright: ignore[reportMissingImports]
 

@@ -57,7 +57,7 @@ def title(text: str) -> str:
 
 
 def section(text: str, heading: str) -> str | None:
-    """Return a section of a Markdown page, including subsections; None if the heading is missing."""
+    """Return a section of a Markdown page, including subsections, or None if the heading is missing."""
     start, rank, fenced = None, 0, False
     lines = text.splitlines()
     for index, line in enumerate(lines):

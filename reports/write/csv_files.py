@@ -97,7 +97,7 @@ def digests_csv(files: Mapping[str, str]) -> str:
 
 
 def not_as_written(folder: Path) -> tuple[str, ...] | None:
-    """The tables and pages of a folder that differ from their digests; None without a file of digests."""
+    """The tables and pages of a folder that differ from their digests, or None without a file of digests."""
     try:
         lines = (folder / DIGESTS).read_text(encoding="utf-8").splitlines()[1:]
     except (OSError, UnicodeDecodeError):

@@ -33,7 +33,7 @@ def undeclared(method: str, step: float) -> float:
 
 
 def compared_step(rows: Iterable[Measurement]) -> float:
-    """The step [s] of the sweep whose ratio to COMPARED_STEP is nearest to 1; NaN without rows."""
+    """The step [s] of the sweep whose ratio to COMPARED_STEP is nearest to 1, or NaN without rows."""
     steps = {row.step for row in rows if row.purpose == "sweep"}
     return min(steps, key=lambda step: abs(math.log(step / COMPARED_STEP)), default=math.nan)
 

@@ -36,7 +36,7 @@ class Rows(tuple[Measurement, ...]):
         return Rows(row for row in self if math.isfinite(getattr(row, name)))
 
     def near(self, step: float) -> Any:
-        """The row with the step nearest to `step` [s]; UNMEASURED if the ratio of the steps is NEAREST_WITHIN or
+        """The row with the step nearest to `step` [s], or UNMEASURED if the ratio of the steps is NEAREST_WITHIN or
         more."""
         row = min(self, key=lambda row: abs(math.log(row.step / step)), default=None)
         return row if row is not None and max(row.step / step, step / row.step) < NEAREST_WITHIN else UNMEASURED

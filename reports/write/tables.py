@@ -53,7 +53,7 @@ def text_table(
     """The lines of a table for a terminal; the first line is the header.
 
     Args:
-        left: the number of columns that are aligned to the left; None for all columns.
+        left: the number of columns that are aligned to the left, or None for all columns.
         separators: the texts between columns in the header and in the rows.
         rule: (character, text between columns) of a line below the header.
     """

@@ -118,7 +118,7 @@ def spaces() -> Iterator[Found]:
 
 
 def unpacked(folder: Path) -> bool:
-    """Unpack Gymnasium and dm_control into a folder; False if pip can't download them."""
+    """Unpack Gymnasium and dm_control into a folder. The result is False if pip can't download them."""
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", str(folder)]
     if subprocess.run([*command, "gymnasium", "dm_control"], capture_output=True).returncode:
         return False

@@ -66,7 +66,7 @@ def sources() -> Sources:
 
 
 def times(factor, step, name, row):
-    """The row with the error `name` multiplied by `factor`; rows at other steps than `step` are unchanged."""
+    """The row with its error `name` multiplied by `factor`, if its step is `step` or if `step` is None."""
     return replace(row, **{name: factor * getattr(row, name)}) if step is None or is_step(row.step, step) else row
 
 

@@ -152,7 +152,7 @@ def test_where_nothing_is_in_proportion_to_softness_its_own_run_bounds_a_row():
 def test_rounding_of_a_change_of_velocity_is_carried_by_a_combination_of_runs():
     for carried in (1.0, 17.0):
         result = of(theory(JUDGE, ConvergenceOrder(2, differences=8, amplified=carried), None, row()), "reaction")
-        # A rounding of 1e-10 m/s over 1/8000 s relative to 10 m/s^2 is 8e-8; any reaction has 1e-9 in addition.
+        # Rounding of 1e-10 m/s in 1/8000 s is 8e-8 relative to 10 m/s^2. Every reaction has 1e-9 in addition.
         assert dict(result.terms)["rounding"] == pytest.approx(carried * 8e-8 + 1e-9, rel=1e-12)
 
 

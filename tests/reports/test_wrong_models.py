@@ -97,7 +97,7 @@ FORCES = "the mistake shows in forces alone, and in a part of them that is small
 COARSE = "of first order: at the finest step that is run its own error is as large as what the mistake makes"
 POLYGON = "a body that is not round is a polygon here, and its blows are larger than what the mistake makes"
 PRESSED = "pins already hold the gears apart: how hard they press is a matter of softness, of which nothing is promised"
-# Some mistakes with this reason do not change the compared digits either.
+# Some mistakes with the reason SWEPT do not change the digits that the baseline compares.
 SWEPT = "its sweeps do not converge on so many joints, so that its own error is larger than what the mistake makes"
 
 LARGER: dict[tuple[str, str], str] = {

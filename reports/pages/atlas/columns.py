@@ -39,7 +39,7 @@ class StoredColumn:
     longest: the largest step [s].
     counts: the number of steps of each run.
     outcomes: `Outcome.letter` or NOT_RUN for each step.
-    errors: the decimal logarithm of the angle error [rad]; NaN for cells that were not run or did not finish.
+    errors: the decimal logarithm of the angle error [rad], or NaN for cells that were not run or did not finish.
     gives: the step at which a joint tears, from `tearing_step` [s].
     left: the remaining fraction of the slowest mode, from `residual_of_sweeps`.
     """
@@ -144,7 +144,7 @@ def stored_column(column: MapColumn, rows: Mapping[int, Measurement]) -> StoredC
 
 
 def _power(row: Measurement) -> float:
-    """The decimal logarithm of the angle error [rad], rounded to tenths; NaN for a run that can't be compared."""
+    """The decimal logarithm of the angle error [rad], rounded to tenths, or NaN for a run that can't be compared."""
     usable = Outcome(row.outcome).comparable and math.isfinite(row.angle) and row.angle > 0
     return round(math.log10(row.angle), 1) if usable else math.nan
 

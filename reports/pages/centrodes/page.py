@@ -183,7 +183,7 @@ def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
 
 
 def largest(values: np.ndarray) -> float:
-    """The largest value; NaN for an empty array or with a NaN in it."""
+    """The largest value. It is NaN for an empty array or if a value is NaN."""
     return float(values.max()) if values.size else math.nan
 
 

@@ -89,8 +89,8 @@ HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 class Capabilities(BuildingTask):
     """The elements that an engine builds.
 
-    The value of a line of ELEMENT_EXAMPLES is its word in the table; that of `reason_key(line)` is the reason of a
-    refusal. A run determines `reactions` and `width`.
+    Each line of ELEMENT_EXAMPLES has a word for the table. The reason of a refusal has the key `reason_key(line)`. A
+    run determines `reactions` and `width`.
     """
 
     description: ClassVar[str] = "what it builds"

@@ -106,7 +106,7 @@ def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
 
 
 def largest_step(answer: Answer, name: str) -> float | None:
-    """The largest step [s] in NEWTON_STEPS that meets a bound together with all smaller steps; None if no step does."""
+    """The largest step [s] in NEWTON_STEPS that meets a bound together with all smaller steps, or None."""
     largest = None
     for step, measure in sorted(zip(NEWTON_STEPS, answer.array(name), strict=True)):
         if not measure < NEWTON_BOUNDS[name]:

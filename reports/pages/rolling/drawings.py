@@ -30,7 +30,7 @@ class Roulette:
     point: in the body's frame [m].
     path: rotations [rad] of the body at the ends of the path.
     shown: rotations [rad] at which the body is drawn.
-    ground, body: arcs [m] between which the curves are drawn; None for the whole body.
+    ground, body: arcs [m] between which the curves are drawn, or None for the whole body.
     """
 
     title: str

@@ -54,7 +54,7 @@ class SizePoint:
     """The result of a method for a chain of `size` links.
 
     step: CPU time of a step [s].
-    error: the largest angle error [rad]; NaN if the run was made for its CPU time only.
+    error: the largest angle error [rad], or NaN if the run was made for its CPU time only.
     """
 
     size: int
@@ -294,7 +294,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def crossing(one: MethodSeries | None, other: MethodSeries | None) -> tuple[int, int] | None:
-    """Two neighbouring sizes between which `one` becomes more expensive than `other`; None if it never does."""
+    """Two neighbouring sizes between which `one` becomes more expensive than `other`, or None if it never does."""
     if one is None or other is None:
         return None
     pairs = [(p.size, p.step, q.step) for p in one.points if (q := other.at(p.size))]

@@ -40,7 +40,7 @@ LINEAR_GROWTH = (2e-3, 4e-2)
 
 
 def growth_of(t: np.ndarray, rate: np.ndarray) -> float:
-    """The slope of log |rate| over time [1/s] between the rates of LINEAR_GROWTH; NaN if the rates are not reached."""
+    """The slope of log |rate| over time [1/s] between the rates of LINEAR_GROWTH, or NaN if a rate is not reached."""
     speed = np.abs(rate)
     late = int(np.argmax(speed > LINEAR_GROWTH[1])) if np.any(speed > LINEAR_GROWTH[1]) else 0
     chosen = (np.arange(len(t)) < late) & (speed > LINEAR_GROWTH[0])

@@ -58,7 +58,7 @@ FOLDED = math.pi / 2  # rad
 
 
 def crossing(t: np.ndarray, values: np.ndarray, limit: float) -> float | None:
-    """The linearly interpolated time at which |values| first exceeds a limit; None if it never does."""
+    """The linearly interpolated time at which |values| first exceeds a limit, or None if it never does."""
     over = np.flatnonzero(np.abs(values) > limit)
     if not over.size or over[0] == 0:
         return None

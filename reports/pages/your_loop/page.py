@@ -32,7 +32,7 @@ LOOP, SLIDER, CHAIN, DISC, SKATE = map(
 class PastedCase:
     """A mechanism in an engine, without and with the lines of the page.
 
-    before: the engine with default settings; None if it lacks the joint.
+    before: the engine with default settings, or None if it lacks the joint.
     after: the engine with the lines of the page.
     """
 
@@ -104,7 +104,7 @@ def table(material: Material, cases: tuple[PastedCase, ...]) -> str:
 
 
 def spread(material: Material, task: Fresh) -> list[float]:
-    """The median, the least and the largest error of the random mechanisms; UNMEASURED if the task was not run."""
+    """The median, the least and the largest error of the random mechanisms, or UNMEASURED if the task was not run."""
     answer = material.finished(task)
     if answer is None:
         return [UNMEASURED] * 3
@@ -138,7 +138,7 @@ def context(material: Material) -> Mapping[str, Any]:
     """The lines and tables.
 
     reactions: engine -> relative error of the joint forces in the closed linkage.
-    fresh: engine -> errors in random closed linkages without and with the lines, each from `spread`.
+    fresh: engine -> `spread` of the errors in random closed linkages, without and with the lines.
     """
     earlier = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
     first = {"mujoco": MUJOCO_CASES[0], "pymunk": PYMUNK_CASES[0]}

@@ -63,7 +63,7 @@ class ModelCheck(Task):
 
 
 def coarsest_enough(checked: CheckResult) -> SettingRun | None:
-    """The setting with the largest step whose error is within the tolerance; None if no error is."""
+    """The setting with the largest step whose error is within the tolerance, or None if no error is."""
     enough = [setting for setting in checked.table if setting.error <= checked.tolerance]
     return max(enough, key=lambda setting: setting.change.dt, default=None)
 
@@ -125,7 +125,7 @@ def _sentence(row: dict[str, str]) -> str:
 
 
 def result_of(material: Material, task: ModelCheck) -> dict[str, Any] | None:
-    """The results of a check with their table; None if the check did not finish."""
+    """The results of a check with their table, or None if the check did not finish."""
     if (answer := material.finished(task)) is None:
         return None
     document = json.loads(str(answer.values["found"]))
