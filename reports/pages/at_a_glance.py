@@ -24,14 +24,14 @@ ORDER_SCENE = "free_four_bar"
 
 @cache
 def sentences() -> Mapping[str, Mapping[str, str]]:
-    """The tables "engines" and "absent" of `at_a_glance.toml`; a table maps an engine's name to a sentence."""
+    """The tables "engines" and "absent" of `at_a_glance.toml`. A table maps the name of an engine to a sentence."""
     return tomllib.loads(Path(__file__).with_name("at_a_glance.toml").read_text(encoding="utf-8"))
 
 
 def glance_table(pages: Mapping[Page, Material], lines: Sequence[EngineLine], scenes: Mapping[str, str]) -> str:
     """A Markdown table with a row for each registered engine; empty if no task of the page "engines" was run.
 
-    lines: rows by compared scene and engine. scenes: name of a compared scene -> title.
+    lines: rows of the compared scenes. scenes: name of a compared scene -> title.
     """
     material = next((material for page, material in pages.items() if page.name == ENGINES_PAGE.name), Material({}))
     answers = {task.method.name: answer for task in MATRIX if (answer := material.finished(task)) is not None}

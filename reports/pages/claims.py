@@ -20,7 +20,7 @@ from reports.write.unmeasured import UNMEASURED
 
 
 def _names(failure: Failure, material: Material) -> dict[str, Any]:
-    """The functions that claims can use. The rows of a method are sorted by step, the largest first."""
+    """The functions that claims can use. The rows of a method are sorted by step; the largest step is first."""
     experiment = Rows(sorted(material.of(failure.cells), key=lambda row: -row.step))
 
     def rows(method: str) -> Rows:
@@ -86,8 +86,8 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
 def settings_of_a_loop(material: Material) -> bool:
     """Whether the statements of the page "settings" on MuJoCo hold.
 
-    A stiff loop alone or RK4 alone reduces the error by less than a factor of 2, and both together by more than a
-    factor of 1000. The integrator implicitfast has the errors of Euler.
+    A stiff loop alone or RK4 alone reduces the error by a factor below 2. Both together reduce it by a factor above
+    1000. The integrator implicitfast has the errors of Euler.
     """
     rows = Rows(material.sweep((guides.SETTINGS_LOOP,)))
 

@@ -56,7 +56,8 @@ def to_rounding(
     engines: Iterable[Engine] = ENGINES_ALONE,
     **fields: Any,
 ) -> Failure:
-    """An experiment in which each engine runs a scene at its `steps_for`; `fields` are further fields of `Failure`."""
+    """An experiment in which each engine runs a scene at the steps of `steps_for`. `fields`: further fields of
+    `Failure`."""
     run = tuple(cell for engine in engines for cell in cells(scene, (engine,), steps_for(engine, every), samples))
     return Failure(title, cells=run, columns=columns, **fields)
 
@@ -107,7 +108,7 @@ def scene_page(
 ) -> Page:
     """A page on scenes. The template can look up rows of the scenes. `deviations.toml` has the known deviations.
 
-    `context` adds variables for the template; `fields` are further fields of `Page`.
+    `context` adds variables for the template. `fields`: further fields of `Page`.
     """
 
     def with_lookups(material: Material) -> Mapping[str, Any]:
@@ -157,7 +158,8 @@ def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:
 def read_answers(
     material: Material, method: str, settings: Iterable[tuple[Task, str]], read: Callable[[Answer], str]
 ) -> list[Observation]:
-    """An observation for each task that was run: `read(answer)`, or the reason why the task did not finish."""
+    """An observation for each task that was run. Its text is `read(answer)` or the reason why the task did not
+    finish."""
     answers = {setting: material.answers.get(task) for task, setting in settings}
     return [
         Observation(method, setting, read(answer) if answer.finished else answer.told)

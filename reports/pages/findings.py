@@ -178,7 +178,7 @@ EXPRESSION_NAMES: Mapping[str, Any] = {
 
 
 def releases(sources: Sources) -> dict[str, Any]:
-    """Errors of stiff loops in releases of MuJoCo, and costs of a default step relative to the newest release."""
+    """Errors of stiff loops in releases of MuJoCo, and relative costs of a step with default settings."""
     entries, versions = released().of("mujoco"), released().versions("mujoco")
     lines = {
         scene: [entry for entry in entries if (entry.scene, entry.variant) == (scene, "tuned")]
@@ -225,7 +225,7 @@ FAULTS_OF_SCRIPTS: Mapping[str, str] = {
 
 
 def faults(sources: Sources) -> dict[str, Any]:
-    """The faults that scripts show in the installed releases, and the number of scripts that show no fault."""
+    """The faults that scripts show in the installed releases, and the number of scripts without a fault."""
     wrong, missing = [], 0
     for title in ("pymunk", "MuJoCo"):
         sentences, release = [], UNKNOWN_MARK

@@ -48,7 +48,7 @@ def symptoms() -> tuple[Symptom, ...]:
 
 
 def foot(command: str, engines: Iterable[Engine] = ()) -> str:
-    """The last line of a page. It states the versions of the registered engines and of `engines`."""
+    """The last line of a page. The line states the versions of the registered engines and of `engines`."""
     return f"Made by `{command}` with {versions(engines)}; timings on {machine()}."
 
 
@@ -133,7 +133,7 @@ def _compared_cell(line: EngineLine, column: Column) -> str:
 
 
 def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The text of the index. It has links only to pages in `pages` and to `files`."""
+    """The text of the index. The index has links only to pages in `pages` and to `files`."""
     entries = [
         (page, judged([*material.sweep(page.scenes), *material.usual(page.scenes)], page.quantity))
         for page, material in pages.items()

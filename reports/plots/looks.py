@@ -18,7 +18,7 @@ USUAL_VARIANTS = ("default", "tuned", "extended")
 
 
 def family_of(engine: str) -> str:
-    """The family of the engine with this name; the name itself if the engine is not registered."""
+    """The family of the engine with this name, or the name if the engine is not registered."""
     return next((entry.family for entry in (*registry.ENGINES, *registry.OTHERS) if entry.name == engine), engine)
 
 

@@ -24,7 +24,7 @@ from reports.plots.theme import LIGHT, bare, drawing
 
 Array = NDArray[np.float64]
 
-# Largest invisible error of a point as a fraction of the picture. It is the width of a line.
+# Largest invisible error of a point as a fraction of the picture, which is the width of a line.
 VISIBLE = 5e-3
 JOINT_DOTS: dict[str, Any] = {"marker": "o", "markerfacecolor": LIGHT.paper, "markeredgecolor": LIGHT.ink}
 INK: dict[str, Any] = {"color": LIGHT.ink, "linewidth": 2.2, "markersize": 4.5, "zorder": 2, **JOINT_DOTS}
@@ -145,7 +145,7 @@ def outline(mechanism: Mechanism, pose: Array, ends: Mapping[str, Points]) -> di
 
 
 def path(scene: Scene, body: str, point: tuple[float, float], t: Array) -> Array:
-    """The path (times, 2) [m] of a point; `point` has its coordinates in the body's frame [m]."""
+    """The path (times, 2) [m] of a point of a body. `point` is in the body's frame [m]."""
     pose = scene.motion(t).pose[:, scene.mechanism().body_index(body)]
     return pose[:, :2] + rotated(pose[:, 2], np.array(point))
 

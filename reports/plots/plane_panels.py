@@ -61,7 +61,7 @@ class Blades:
 
 @dataclass(frozen=True)
 class PanelNote:
-    """A text at a point; `align` is matplotlib's horizontal alignment."""
+    """A text at a point. `align` is matplotlib's horizontal alignment."""
 
     point: tuple[float, float]
     text: str
@@ -83,7 +83,7 @@ class Panel:
     logarithmic_across: bool = False
 
     def corners(self) -> tuple[Array, Array]:
-        """The lowest and highest coordinates of framed paths, blades and notes; The width is at least MIN_ASPECT times
+        """The lowest and highest coordinates of framed paths, blades and notes. The width is at least MIN_ASPECT times
         the height."""
         points = [path.finite() for path in self.paths if path.framed]
         points += [stroke for blades in self.blades for stroke in blades.strokes()]

@@ -1,1 +1,1 @@
-"""Random planar mechanisms, and the laws that every engine has to obey on them."""
+"""Random planar mechanisms, and the laws that every engine must obey for these mechanisms."""

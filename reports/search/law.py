@@ -112,7 +112,8 @@ def driving_force(mechanism: Mechanism, twist: Array) -> float:
 
 
 def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """Errors of an engine's first steps by the equations that it declares for single instants.
+    """Errors of an engine's first steps. The engine declares equations for single instants, which the steps must
+    satisfy.
 
     `engines.Engine.instants` returns both sides. Errors are relative to the largest term of the equations.
     """
@@ -139,7 +140,7 @@ def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDe
     """Instants of the first steps. Only the start is used if a body or a constraint direction turns by more than a
     radian in a step, or if there is a roll.
 
-    The equations of a roll assume a closed gap, and after a step the gap is open.
+    The equations of a roll assume a closed gap, but the gap is open after a step.
     """
     dt = INSTANT_STEP * mechanism.time_scale
 

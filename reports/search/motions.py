@@ -43,7 +43,7 @@ Floors = dict[str, float]
 # Duration in units of the mechanism's time scale, which is too short for exponential growth of errors.
 MOTION_SPAN = 0.4
 MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS is the number of steps between two samples.
-# Largest ratio of an error to its prediction, by the declared order, from the error at twice the step. The margin
+# Largest ratio of an error to the error that the declared order predicts from the run with twice the step. The margin
 # covers the next
 # power of the step and the sampling of the error (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
@@ -247,14 +247,15 @@ class _Case:
         )
 
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
-        """Errors by a run of the judge with the regularisation that the engine declares at this step, and tolerances.
+        """(error, tolerance) by check, from a run of the judge with the regularisation that the engine declares at this
+        step.
 
         If the compliance depends on the step, its effect has the declared order only while the compliance is small. So
         the judge is
         run with the same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of two changes
         of the judge's run.
-        The first is the change with doubled steps, since the engine integrates other coordinates. The second is the
-        change with the compliance scaled by the largest ratio of inverse inertias along the motion, since the judge
+        The first change is that with doubled steps, since the engine integrates other coordinates. For the second
+        change, the compliance is multiplied by the largest ratio of inverse inertias along the motion. The judge
         evaluates the inverse inertia at each pose, and MuJoCo only at the start.
         """
         mechanism, spacing = self.mechanism, MOTION_SPAN * self.mechanism.time_scale / MOTION_SAMPLES
@@ -313,8 +314,8 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
 
     Until `unresolved_at` a method claims an error of at most CLAIM for poses, relative to a radian or the length scale.
     It claims an error of at most FORCES for reactions, relative to the largest force, unless it warns of reactions. Any
-    other warning withdraws both claims. The error NEEDLESS_REPORT is 1 if a method warns although all poses are within
-    the claim, else 0. It is not a fault.
+    other warning withdraws the claims for poses and for reactions. NEEDLESS_REPORT is 1 if a method warns although all
+    poses are within the claim, else 0. A needless report is not a fault.
     """
     steps, every = (
         CLAIM_STEPS[number % len(CLAIM_STEPS)],
@@ -331,7 +332,7 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
 
 
 def check_claims(mechanism: Mechanism, run: Trajectory, truth: Trajectory) -> dict[str, tuple[float, float]]:
-    """(error, claim) by check. The judge's motion must contain the samples of the run."""
+    """Check -> (error, claim). The judge's motion must contain the samples of the run."""
     at = np.linspace(0, len(truth.t) - 1, len(run.t)).round().astype(int)
     length, arm = mechanism.length_scale, np.where(mechanism.is_angular, mechanism.length_scale, 1.0)
     missed = np.nan_to_num(np.abs(run.pose - truth.pose[at]) / [length, length, 1.0], nan=np.inf).max(axis=(1, 2))

@@ -64,8 +64,8 @@ class Equality:
 
     `first`, `second`: numbers of the bodies. With "connect" and "weld", `second` may be the world, 0. Other kinds
     couple the last coordinates of both bodies. `at`: anchor of a "connect" in the first body's frame, in tenths of a
-    metre. `curve`: for the first coordinate or tendon as a polynomial of the second one, twice the linear coefficient
-    and twice the quadratic coefficient. A tendon is the sum of a coordinate and the previous coordinate.
+    metre. `curve`: twice the linear and twice the quadratic coefficient of the polynomial that gives the first
+    coordinate or tendon from the second. A tendon is the sum of a coordinate and the previous coordinate.
     """
 
     kind: str
@@ -90,7 +90,8 @@ class RawModel:
 
 
 def coordinates(model: RawModel) -> list[tuple[int, str]]:
-    """The coordinates in MuJoCo's depth-first order: (number of the body, "slide 0", "slide 1" or "hinge")."""
+    """The coordinates in MuJoCo's depth-first order, as pairs of a body's number and "slide 0", "slide 1" or
+    "hinge"."""
 
     def below(body: int) -> list[tuple[int, str]]:
         mine = [(body, name) for name in model.parts[body - 1].rates] if body else []
@@ -220,8 +221,9 @@ def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
 class StartEquations:
     """The equations of motion of a model at the start.
 
-    `root` (coordinates, coordinates): a root S of the mass matrix S^T S. `free`: S times the accelerations without
-    equalities. `rows`: Jacobian J of each equality. `right`: the product of J and the accelerations. `bent`: the part
+    `root` (coordinates, coordinates): a root S of the mass matrix S^T S. `free`: the product of S and the accelerations
+    without equalities. `rows`: the Jacobian J of each equality. `right`: the product of J and the accelerations.
+    `bent`: the part
     of `right` that comes from the curve of an equality. `rates` (coordinates,): velocities that satisfy the equalities.
     """
 
@@ -245,7 +247,7 @@ class StartEquations:
 
 @lru_cache(maxsize=4)  # a model is drawn, compared and run in succession
 def start_equations(model: RawModel) -> StartEquations:
-    """The equations of a model. Raises InvalidMechanism for nearly dependent rows or a body joined to itself."""
+    """The equations of a model. Raises InvalidMechanism for nearly dependent rows or if a body is joined to itself."""
     order = coordinates(model)
     count, zeros = len(order), np.zeros(len(order))
     slips = [_slips(model, zeros, unit) for unit in np.eye(count)]
@@ -276,7 +278,7 @@ def start_equations(model: RawModel) -> StartEquations:
 
 
 def draw_model(seed: int, number: int, kinds: tuple[str, ...]) -> RawModel:
-    """Case `number` of a seed with equalities of these kinds. It is the same on every machine.
+    """Case `number` of a seed with equalities of these kinds. The case is the same on every machine.
 
     No body has slides if all kinds are among HINGED_KINDS.
     """

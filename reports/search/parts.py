@@ -64,10 +64,10 @@ class RecipeLink:
 
     `first`, `second`: numbers of the bodies, where `first` may be the ground, 0. `at`: position relative to the second
     body,
-    in tenths of that body's size. Other lengths have this unit too. `rims`: the curves of both bodies of a roll.
+    in tenths of that body's size. Other lengths are in the same unit. `rims`: the curves of both bodies of a roll.
 
-    `turn`: a direction in the world, in steps of 0.3 rad. It is the direction of a slot, a blade, a force, or the
-    tangent of a contact. The first body's material is to the left of this tangent. `more`: the distance from `at` to
+    `turn`: a direction in the world, in steps of 0.3 rad. Slots, blades, forces and tangents of contacts have this
+    direction. The first body's material is to the left of the tangent. `more`: the distance from `at` to
     the point
     that defines the slot's line, or the rate of a drive in steps of 0.5 rad/s. For gears, forces and torques, half of
     `more` is the ratio or the strength. For rods, springs and dampers, `more` and `turn` are the distance and the
@@ -125,7 +125,7 @@ class Integers:
 
 
 def ladder(step: int) -> Decimal:
-    """The number of a step in the sequence ..., 0.2, 0.5, 1, 2, 5, 10, ... The number of step 0 is 1."""
+    """The number at this step in the sequence 0.2, 0.5, 1, 2, 5, 10, which is continued at both ends; step 0 is 1."""
     return Decimal((1, 2, 5)[step % 3]).scaleb(step // 3)
 
 

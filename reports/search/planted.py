@@ -61,7 +61,7 @@ CLOSING_STEPS = 6  # Newton steps that close the joints of a wrong mechanism
 class Misbuilt(Mechanism):
     """A mechanism with a fault; reactions are computed for the mechanism `right`.
 
-    If the fault prevents that all joints are closed, their gaps are minimal.
+    If not all joints can be closed with the fault, the gaps are minimal.
     """
 
     right: Mechanism = field(kw_only=True)
@@ -74,9 +74,10 @@ class Misbuilt(Mechanism):
         return self.right.reaction(*arguments, **options)
 
     def closed(self, twist: Array) -> Misbuilt:
-        """A copy with closed joints; poses and velocities are projected in the metric of the masses.
+        """A copy with closed joints. Poses and velocities are projected in the metric of the masses.
 
-        twist: velocities (bodies, 3) to be projected; poses are those of the right mechanism.
+        twist: velocities (bodies, 3) before the projection. The poses before the projection are those of the right
+        mechanism.
         """
         pose = allowed = self.right.pose
         for _ in range(CLOSING_STEPS):

@@ -40,8 +40,8 @@ from reports.search.parts import (
 
 Array = NDArray[np.float64]
 Point = tuple[Decimal, Decimal]
-# Limit of the ratio of the smallest to the largest singular value of the rows. Below it, rounding changes the forces
-# and the motion in every engine.
+# Limit of the ratio of the smallest to the largest singular value of the rows. With a smaller ratio, rounding changes
+# the forces and the motion in every engine.
 DEPENDENCE_LIMIT = 1e-3
 SINGULAR_LIMIT = 1e-6  # The limit in mechanisms with toggles or folds.
 # Projected velocities that are smaller, relative to the recipe's velocities, are rounding errors.
@@ -212,7 +212,7 @@ class Standing:
         return self.bodies[body - 1].pose[2] if body else 0.0
 
     def _local(self, body: int, point: Point) -> Vector:
-        """A point of the world in a body's frame [m]."""
+        """Coordinates [m] of a point of the world in a body's frame."""
         x, y = (float(point[axis] - self._places[body][axis]) for axis in (0, 1))
         return tuple(components(-self._angle(body), x, y))
 

@@ -36,9 +36,9 @@ State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, i
 
 # Methods that combine runs amplify rounding up to a hundred times. Very stiff constraints lose half of the digits.
 DESCRIPTION_TOLERANCE = 1e-7
-# Tolerance in units of the engine's precision. It is large, since a displacement is a small difference.
+# Tolerance in units of the engine's precision. The tolerance is large, since a displacement is a small difference.
 LOW_PRECISION_ROUNDINGS = 1e4
-POSITION_ROUNDING = 1e-6  # Smaller displacements, relative to the position, are affected by its rounding.
+POSITION_ROUNDING = 1e-6  # Displacements that are smaller, relative to the position, have large rounding errors.
 MAX_NOISE = 0.1  # If the noise relative to the motion is larger, the check detects nothing.
 ESTIMATE_MARGIN = 10.0  # An error above ESTIMATE_MARGIN times the error estimate contradicts the estimate.
 TOO_LONG = CheckSkipped("something turns by more than a radian in a step, so rounding errors grow without a bound")
@@ -121,8 +121,8 @@ def _compare_runs(
     floor = max(DESCRIPTION_TOLERANCE, LOW_PRECISION_ROUNDINGS * engine.precision)
 
     def state_difference(state: State, other: State, of: Mechanism) -> float:
-        # The rounding error of a position is relative to the distance from the origin. That of a velocity is the
-        # position's error divided by the step.
+        # The rounding error of a position is relative to the distance from the origin. The rounding error of a velocity
+        # is that of the position divided by the step.
         least = POSITION_ROUNDING * max(distance, float(np.abs(of.pose[:, :2]).max()))
         if any(isinstance(joint, Weld) for joint in of.joints):  # the engine corrects the error of a weld's angle
             least += NOISE_MARGIN * engine.angle_error * of.length_scale / floor

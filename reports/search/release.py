@@ -25,14 +25,15 @@ from reports.search.mujoco_alone import RawModel, StartEquations, start_equation
 from reports.search.parts import case_from_json, case_to_json
 
 DISTRIBUTIONS = ("mujoco-core", "mujoco")  # Mujoco-core exists from version 4.0 on.
-# MuJoCo omits the velocity term of curved equalities. CURVED expects the term; BESIDE_CURVED accepts its absence.
+# MuJoCo omits the velocity term of curved equalities. The check CURVED expects this term, and the check BESIDE_CURVED
+# accepts its absence.
 CURVED, BESIDE_CURVED = "acceleration, a known fault", "beside the known fault"
 
 
 def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     """The values are relative "errors" by check, the accelerations "found" and "expected", and the "version".
 
-    The error BESIDE_CURVED is the smaller error of two, with and without the velocity term of curved equalities.
+    BESIDE_CURVED is the smaller of the errors with and without the velocity term of curved equalities.
     `version`: a release such as "3.6.0", or "" for the installed release. Raises Fault if the other release raises or
     crashes.
     """
@@ -119,8 +120,8 @@ def _check_in_other_release(version: str, model: str) -> dict[str, Any]:
 
 
 def release_of(name: str) -> str | None:
-    """The release in a subject's name, which is "" for the installed release. None if the subject is not MuJoCo
-    alone."""
+    """The release in a subject's name, which is "" for the installed release. The result is None if the subject is not
+    MuJoCo alone."""
     name_parts = name.split()
     return " ".join(name_parts[2:]) if name_parts[:2] == ["mujoco", "alone"] else None
 

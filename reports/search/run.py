@@ -35,8 +35,8 @@ PLANTED_LIMIT = 1800.0  # CPU time of a control with a planted fault [s].
 WAVE_CHUNKS = 4  # Chunks for each worker between two checks of the time limit.
 DEFAULT_CASES = 200
 
-# Function of (store, tasks, limit, label, number of cases of a task) that returns a context of (tasks that are not
-# stored, done(answer, count), watch).
+# Function of (store, tasks, limit, label, number of cases of a task). It returns a context with the tasks that are not
+# stored, a function done(answer, count), and a watch.
 Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..., None], Any]]]
 
 
@@ -58,7 +58,7 @@ def run_search(
     seconds: float | None = None,
     workers: int | None = None,
 ) -> tuple[list[CaseResult], Mapping[Shrink, Answer]]:
-    """Results of `cases` cases of each subject, and reduced findings. Both are stored in `folder`.
+    """Results of `cases` cases of each subject, and reduced findings. Results and findings are stored in `folder`.
 
     `seed`: None selects the first published seed. `kinds`: an empty sequence selects all kinds. `seconds`: time limit,
     after which no task is started.

@@ -88,7 +88,7 @@ def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
 
 
 def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list[tuple[str, Mechanism, float, int]]:
-    """Two runs (title, mechanism, step [s], number of steps), with two descriptions for a relation, else with two
+    """Two runs (title, mechanism, step [s], number of steps). A relation has two descriptions; other checks have two
     steps."""
     name = relations.RELATIONS[number % len(relations.RELATIONS)]
     if check in (*relations.RELATIONS, "relations"):

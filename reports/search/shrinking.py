@@ -1,4 +1,4 @@
-"""Test-case reduction. Bodies and joints are removed and integers made smaller while the check still fails."""
+"""Test-case reduction. Bodies and joints are removed, and integers are made smaller, while the check still fails."""
 
 from __future__ import annotations
 
@@ -173,8 +173,8 @@ def _kind_of(result: OracleResult) -> str:
 
 
 def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> list[tuple[str, CaseResult]]:
-    """Pairs (check, case), at most `most` for each subject and check. Cases with few kinds of joints are preferred, and
-    each set of kinds has only its first case.
+    """Pairs (check, case), at most `most` for each subject and check. Cases with few kinds of joints are preferred. Of
+    several cases with the same kinds, only the first is used.
     """
     by_check: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
     for case in cases:

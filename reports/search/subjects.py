@@ -67,7 +67,7 @@ class Adapted:
 
 @dataclass(frozen=True)
 class Alone:
-    """MuJoCo without an adapter, on models in its own format (`mujoco_alone`).
+    """MuJoCo without an adapter, with models in MuJoCo's format (`mujoco_alone`).
 
     `release`: a version such as "3.6.0", or "" for the installed release.
     """

@@ -58,8 +58,8 @@ DECADES = 8  # largest number of decades of the error axis
 class Take(Look):
     """A picture of the exact motion of a scene and of the motions of several methods.
 
-    methods: (label, engine, steps between samples). samples: number of sampling intervals; None selects the scene's
-    number.
+    methods: (label, engine, steps between samples). samples: number of sampling intervals, or None for that of the
+    scene.
     """
 
     scene: Scene
@@ -139,8 +139,8 @@ def animation(shown: Shown, title: str) -> str:
 def _keyframes(label: str, places: Array) -> str:
     """Return the CSS that moves the elements with the id `label-...` through `places` (keys, 3).
 
-    The columns of `places` are x, y [pt] and the angle [degrees]. The previous place replaces a place that is not
-    finite.
+    The columns of `places` are x, y [pt] and the angle [degrees]. A place that is not finite is replaced by the place
+    before it.
     """
     frames = []
     x0, y0, first = last = places[0]

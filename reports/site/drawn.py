@@ -219,7 +219,8 @@ def loose(mechanism: Mechanism) -> list[Skate | Roll]:
 
 
 def required_friction(reaction: Array) -> Array:
-    """Return the friction coefficient (times,) [1] that rolling requires. `reaction` (times, 2): tangential, normal.
+    """Return the friction coefficient (times,) [1] that rolling requires. `reaction` (times, 2): tangential and normal
+    force.
 
     The result is NaN while the normal force pulls, since no coefficient is sufficient.
     """

@@ -1,4 +1,4 @@
-"""Builds a site by Sphinx with MyST and Furo. Markdown pages and docstrings become HTML with MathML and a search.
+"""Builds a site by Sphinx with MyST and Furo. Markdown pages and docstrings become HTML with MathML and a search page.
 
 Lessons and the page of stored rows have other templates.
 """

@@ -1,7 +1,7 @@
 """Munk2D, the engine in pymunk, as WebAssembly. `python -m reports.site.munk2d` compiles it by emscripten.
 
-The compiled file is part of the package, so `crosscheck site` needs no compiler. Its first line has the release of
-pymunk and a digest of the sources.
+The compiled file is part of the package, so `crosscheck site` needs no compiler. The first line of the file has the
+release of pymunk and a digest of the sources.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def compiled_from(text: str) -> tuple[str, str]:
 
 
 def compile_munk2d(release: str) -> str:
-    """Return a JavaScript file with Munk2D from a release of pymunk. It begins with the licence of Munk2D.
+    """Return a JavaScript file with Munk2D from a release of pymunk. The file begins with the licence of Munk2D.
 
     Raises BadInput if pip cannot fetch the sources, NotFetched if emscripten fails.
     """

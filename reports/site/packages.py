@@ -20,7 +20,7 @@ from typing import Any
 from reports.run.files import temporary_folder
 
 PATIENCE = 180  # s: timeout for one package.
-ANSWERING = 8  # s: timeout of a query to a registry. It is short, since the network may be missing.
+ANSWERING = 8  # s: timeout of a query to a registry. The timeout is short, since the network may be missing.
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Package:
 
 
 class NotFetched(Exception):
-    """A file cannot be fetched or built. The message is the reason."""
+    """A file cannot be fetched or built. The message states the reason."""
 
 
 @functools.cache

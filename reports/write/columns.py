@@ -172,7 +172,8 @@ FormatCell = Callable[[EngineLine, Column], str]
 
 
 def absence_reason(line: EngineLine, column: Column) -> str:
-    """NO_JOINT or NOT_BUILT; "" if a method of the column builds the mechanism or if no method was run."""
+    """The reason NO_JOINT or NOT_BUILT, or "" if a method of the column builds the mechanism or if no method was
+    run."""
     if column not in line.columns:
         return NO_JOINT
     rows = [row for _, of_method in line.columns[column] for row in of_method]
@@ -191,7 +192,7 @@ def _format_cell(line: EngineLine, column: Column, format_rows: FormatCell) -> s
 
 
 def remarks_of(line: EngineLine, column: Column) -> str:
-    """The remarks in a cell: ', contact' if a contact replaces a joint, and the names of unusual variants."""
+    """The remarks in a cell, which are ', contact' if a contact replaces a joint, and the names of unusual variants."""
     joints = mechanism_of(line.scene).joints
     by_contact = any(engine.uses_contacts for engine, _ in line.columns[column])
     by_contact &= column in (Column.SHIPPED, Column.SETTINGS)
@@ -232,7 +233,7 @@ def _by_engine(lines: Sequence[EngineLine]) -> Iterator[tuple[str, list[EngineLi
 def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
     """The least error of a method's runs that take at most this CPU time [s/s]; infinite without such a run.
 
-    A run counts with the largest error at its step and at all smaller steps, since two errors may cancel at its step.
+    The error of a run is the maximum over its step and all smaller steps, since two errors may cancel at one step.
     """
     worst, least = 0.0, math.inf
     for row in sorted(rows, key=lambda row: row.step):
@@ -244,8 +245,8 @@ def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
 
 
 def error_by_cost(methods: Iterable[Sequence[Measurement]], name: str) -> list[tuple[float, float]]:
-    """Pairs (CPU time [s/s], error within it) for the first and the last CPU time, and for each at which the error
-    falls."""
+    """Pairs (CPU time [s/s], error within this time) for the first and the last time, and for each time at which the
+    error falls."""
     methods = list(methods)
     costs = sorted({row.cpu for rows in methods for row in rows if row.cpu > 0})
     pairs = [(cost, min(error_within(rows, name, cost) for rows in methods)) for cost in costs]

@@ -57,7 +57,7 @@ def cell_text(row: Measurement, name: str) -> str:
 
 
 def no_formula(text: str) -> str:
-    """The text; it begins with an apostrophe if a spreadsheet would interpret the text as a formula."""
+    """The text, after an apostrophe if a spreadsheet would interpret the text as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
@@ -114,8 +114,8 @@ def _digest_of(path: Path) -> str:
 
 
 ERROR_COLUMNS = (*(quantity.name for quantity in QUANTITIES), *OF)
-# Factors within which times on one machine count as equal. In two full runs, 95 % of the rows agreed within the factor
-# 1.17 for "cpu", which is the least of several times, and 1.74 for "build", which is measured once.
+# Factors within which times on one machine count as equal. In two full runs, 95 % of the rows agreed within the factors
+# 1.17 for "cpu" and 1.74 for "build", which is measured only once.
 TIMING_NOISE = {"cpu": 1.2, "build": 1.8}
 
 
@@ -163,7 +163,7 @@ def as_published(rows: Mapping[Cell, Measurement], before: Published) -> dict[Ce
 def with_published_numbers(
     row: Measurement, before: Mapping[str, str], same_machine: bool, amplified: float = 1.0
 ) -> Measurement:
-    """The row with published numbers, if they agree with its numbers within rounding or timing noise.
+    """The row, with the published numbers if these agree with the row's numbers within rounding or timing noise.
 
     Args:
         before: the published texts by column; they are ignored if the outcome differs.

@@ -27,7 +27,7 @@ class RenderedExperiment:
     """The texts and tables of an experiment.
 
     observations, grid: Markdown tables, which are empty without observations or rows.
-    unrun: whether no cell and no task of the experiment was run, although it has some.
+    unrun: whether the experiment has cells or tasks of which none was run.
     """
 
     title: str
@@ -69,7 +69,7 @@ def observe(
     material: Material, cell: Cell, setting: str, describe: Callable[[Trajectory], str]
 ) -> tuple[Observation, ...]:
     """The observation on one motion; empty if it was not run or if the engine does not build the mechanism. `describe`
-    is called only with a finite motion. The observation on any other motion is its outcome.
+    is called only with a finite motion. For another motion the observation is the outcome of the run.
     """
     answer = material.answers.get(Motion(cell))
     if answer is None or answer.outcome == Outcome.UNSUPPORTED:

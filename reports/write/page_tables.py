@@ -16,7 +16,7 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
 from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words, sweep_words
 
-# Step [s] at which methods are compared. Otherwise the nearest step of the grid is used.
+# Step [s] at which methods are compared. A grid without this step uses its nearest step.
 COMPARED_STEP = 1e-3
 # Error bounds in the unit of the page's quantity. A setting is recommended for each bound.
 TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
@@ -48,7 +48,7 @@ def scene_table(
     """A Markdown table of the methods in one scene, with errors and cost at `compared_step` and convergence.
 
     Args:
-        name: the quantity of the page. Columns for errors of the joints follow if a row has these errors.
+        name: the quantity of the page. Columns for errors of joints follow if a row has such errors.
         enforcement: method -> what enforces the joints.
         declared: declared error of a method at a step. A plateau that is larger is marked.
         inner_runs: method -> description of the inner runs.
@@ -161,8 +161,9 @@ def advice_lines(
 
 
 # A program without this suite is a file `results/programs/<scene>_<method>.py`, where "_" replaces other characters
-# than letters and digits. It has the lines `duration = ...` (within the scene's horizon) and `steps = ...`, and prints
-# the position and angle `end` of a body. Programs are written by hand, because `crosscheck export` can't write methods
+# than letters and digits. Such a program has the lines `duration = ...` (within the scene's horizon) and `steps = ...`,
+# and prints the position and angle `end` of a body. Programs are written by hand, because `crosscheck export` can't
+# write methods
 # with code in each step. A report changes only the line `steps = ...`. For a method without a program, the page has
 # code that calls this suite.
 PROGRAM_FOLDER = "programs"

@@ -26,7 +26,7 @@ class Rows(tuple[Measurement, ...]):
     __slots__ = ()
 
     def of(self, scene: str = "", method: str = "", purpose: str = "sweep") -> Rows:
-        """The rows with this scene, method ("mujoco tuned") and purpose; "" selects all."""
+        """The rows with this scene, method ("mujoco tuned") and purpose. An empty text selects all."""
         wanted = {"scene": scene, "method": method, "purpose": purpose}
         return Rows(
             row for row in self if all(not value or getattr(row, name) == value for name, value in wanted.items())
@@ -74,7 +74,7 @@ def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
     """The functions by which templates look up rows of scenes.
 
     They are `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine, variant,
-    every)` and `ended(scene, engine, variant)`. The last function returns the method's outcomes.
+    every)` and `ended(scene, engine, variant)`. The function `ended` returns the outcomes of the method.
     """
     rows = Rows(material.sweep(scenes))
 

@@ -144,7 +144,7 @@ def sweep_words(sweep: Sweep, lost: str = "") -> str:
 
 
 def error_words(row: Measurement | None, name: str) -> str:
-    """The error of a run, or the outcome of a run that can't be compared; a dash without a run."""
+    """The error of a run, the outcome if the run can't be compared, or a dash without a run."""
     if row is None:
         return DASH
     return number(getattr(row, name)) if Outcome(row.outcome).comparable else str(row.outcome)

@@ -1,7 +1,8 @@
 """Missing numbers in templates. A clause that lacks a number is left out.
 
-A lookup without a row returns `UNMEASURED`. It is false and NaN, and each of its attributes is UNMEASURED. A template
-prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes the text up to `{% endfilter %}` if it contains
+A lookup without a row returns `UNMEASURED`. UNMEASURED is false and NaN, and each of its attributes is UNMEASURED. A
+template
+prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes the text up to `{% endfilter %}` if this text contains
 UNKNOWN_MARK. `without_marks` replaces other marks by NOT_MEASURED.
 """
 

@@ -79,7 +79,7 @@ class StoredColumn:
 
 @dataclass(frozen=True)
 class MapColumn:
-    """The cells of a column; `steps` has (samples, steps between samples) of each run, the largest step first."""
+    """The cells of a column. `steps` has (samples, steps between samples) of each run; the largest step is first."""
 
     stability_map: StabilityMap
     value: float
@@ -93,7 +93,7 @@ class MapColumn:
 
 
 def columns_of(stability_map: StabilityMap, engines: Iterable[Engine], points: int) -> list[MapColumn]:
-    """All columns of a map with `points` values and at most `points` steps."""
+    """All columns of a map, for `points` parameter values and at most `points` steps."""
     steps, values = stability_map.steps(points), stability_map.at(points)
     scenes = {value: stability_map.make(value) for value in values}
     return [MapColumn(stability_map, value, scenes[value], engine, steps) for value in values for engine in engines]
@@ -185,8 +185,8 @@ def tearing_step(scene: Scene, mechanism: Mechanism, engine: Engine, least: floa
 def residual_of_sweeps(mechanism: Mechanism, engine: Engine) -> float:
     """The fraction of the slowest mode's error that remains after the iterations of a step [1].
 
-    NaN for an engine without a fixed number of Gauss-Seidel iterations. If each step is to close the whole gap, gaps
-    grow from step to step when this fraction is above 1/2 (`engines.pymunk.convergence`).
+    The result is NaN for an engine without a fixed number of Gauss-Seidel iterations. If each step should close the
+    whole gap, gaps grow when this fraction is above 1/2 (`engines.pymunk.convergence`).
     """
     count = engine.iterations_of(mechanism)
     return math.nan if count is None else float(convergence_factor(mechanism) ** count)
@@ -210,7 +210,8 @@ def as_csv(columns: Iterable[StoredColumn]) -> str:
 
 
 def read(path: Path) -> tuple[StoredColumn, ...]:
-    """The columns of an atlas file; empty if the file does not exist. Raises ValueError if it is not an atlas file."""
+    """The columns of an atlas file; empty if the file does not exist. Raises ValueError if the file is not an atlas
+    file."""
     if not path.is_file():
         return ()
     columns: list[StoredColumn] = []

@@ -71,7 +71,7 @@ def outcome_table(columns: Sequence[StoredColumn]) -> str:
 
 
 def largest_step(columns: Sequence[StoredColumn], bound: float) -> str:
-    """The largest step for which all runs at this and at smaller steps finish with errors below `bound` [rad].
+    """The largest step such that all runs at this step and at smaller steps finish with errors below `bound` [rad].
 
     The result is a dash if there is no such step. A cell that was not run has the error at the next larger step.
     """
@@ -100,7 +100,7 @@ def agreement(columns: Sequence[StoredColumn]) -> tuple[int, int]:
     """The number of columns whose tearing step is predicted within a factor of three, and the number of counted
     columns.
 
-    A column counts if it has a prediction, its run at the largest step is torn, and its run at the smallest is not.
+    A column counts if it has a prediction, a torn run at the largest step, and no torn run at the smallest step.
     """
     near = count = 0
     for column in columns:

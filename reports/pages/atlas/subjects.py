@@ -52,7 +52,7 @@ class StabilityMap:
         return tuple(float(f"{value:.4g}") for value in np.geomspace(low, high, points))
 
     def steps(self, points: int) -> tuple[tuple[int, int], ...]:
-        """(samples, steps between samples) of at most `points` runs; their steps [s] form a decreasing sequence.
+        """Pairs (samples, steps between samples) of at most `points` runs with decreasing steps [s].
 
         A run has 10 to 20 samples, so that the reference motion is evaluated at few instants.
         """
@@ -77,7 +77,7 @@ def rod_rate(scene: DrivenSliderCrank) -> float:
 
 
 def short_trailer(length: float) -> CarAndTrailer:
-    """A car and a trailer with a drawbar of this length [m] and its centre of mass on the axle."""
+    """A car and a trailer; the trailer has a drawbar of this length [m] and its centre of mass on the axle."""
     plain = CarAndTrailer()
     return replace(plain, length=length, centres=(plain.centres[0], 0.0), duration=2.0, horizon=2.0)
 
@@ -98,7 +98,8 @@ def stiffest_hanging(scene: LinkPendulum) -> float:
     return float(scene.chain.modes()[0][-1])
 
 
-# Map -> (scene at a parameter value, frequency of a scene). Motions of chains last 0.5 s, because chaos amplifies
+# Map -> (function that makes a scene from a parameter value, function that returns a scene's frequency). Motions of
+# chains last 0.5 s, because chaos amplifies
 # errors in longer motions.
 SCENES_AND_FREQUENCIES: Mapping[str, tuple[Callable[[float], Scene], Callable[[Any], float]]] = {
     "coupler": (lambda x: FreeFourBar(density=(1.0, x, 1.0)), lambda scene: 1 / scene.mechanism().time_scale),

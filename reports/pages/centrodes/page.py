@@ -1,4 +1,4 @@
-"""The page of centrodes: the motion of a coupler as rolling of two curves, and errors of instant centres in engines."""
+"""The page of centrodes: a coupler's motion as the rolling of two curves, and errors of instant centres in engines."""
 
 from __future__ import annotations
 
@@ -33,8 +33,7 @@ MAX_POSES_CHECKED = 101
 
 
 def returned(curves: Centrodes) -> tuple[float, float]:
-    """The largest distance [m] between the body's origins in the poses and in the rolling, and the checked rotation
-    [rad].
+    """The largest distance [m] of the rolling body's origin from the poses, and the checked range of rotation [rad].
 
     Raises InvalidMechanism if the curves can't roll on each other.
     """
@@ -79,7 +78,7 @@ def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indice
 
 
 def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
-    """Write the names of pins. The name of a ground pin is beyond the bar's end, that of another pin outside of the
+    """Write the names of pins. The name of a ground pin is beyond the bar's end, and other names are outside of the
     linkage."""
     pins, bars = {}, {}
     for joint in mechanism.joints:
@@ -97,8 +96,7 @@ def _letters(panel: Axes, mechanism: Mechanism, pose: Array) -> None:
 
 
 def draw_rate(curves: Centrodes) -> Figure:
-    """A chart of ds/dtheta, from the path of the instant centre and from both curvatures, with the relative
-    difference."""
+    """A chart of ds/dtheta by two formulas, from the path of the instant centre and from both curvatures."""
     total = 1 / (curves.space_curvature + curves.body_curvature)
     degrees = np.degrees(curves.theta)
     with drawing(4.0) as figure:
@@ -132,7 +130,7 @@ def times(count: int) -> np.ndarray:
 
 @cache
 def exact() -> tuple[Trajectory, Centrodes]:
-    """(reference motion within ARC, centrodes of the coupler)."""
+    """The reference motion within ARC, and the centrodes of the coupler."""
     truth = freeze(DrivenFourBar().motion(times(ARC_SAMPLES)))
     return truth, centrodes(truth.t, truth.pose[:, COUPLER_INDEX], truth.twist[:, COUPLER_INDEX])
 
@@ -167,7 +165,7 @@ def agreement(curves: Centrodes) -> float:
 
 
 def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
-    """For each cell with a stored motion: (cell, centre error [m], angle error [rad], rate error [rad/s])."""
+    """Rows (cell, centre error [m], angle error [rad], rate error [rad/s]) for the cells with a stored motion."""
     low, high = times(2)
     rows = []
     for cell, run in material.motions(CENTRODE_CELLS).items():
@@ -183,7 +181,7 @@ def measured(material: Material) -> list[tuple[Cell, float, float, float]]:
 
 
 def largest(values: np.ndarray) -> float:
-    """The largest value. It is NaN for an empty array or if a value is NaN."""
+    """The largest value. The result is NaN for an empty array or if a value is NaN."""
     return float(values.max()) if values.size else math.nan
 
 

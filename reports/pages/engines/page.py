@@ -1,8 +1,9 @@
 """The page of engines: elements that each engine builds, error against CPU time, and the velocity term of loops.
 
-The velocity term of a loop is the right-hand side of J q'' = -J' q' in the tree's coordinates q. An engine without it
-solves J q'' = 0. The engine's reactions at instants of the exact motion are compared with the solutions of both
-equations. Only rows that the engine declares as regularised differ between the equations.
+The velocity term of a loop is the right-hand side of J q'' = -J' q' in the tree's coordinates q. An engine that omits
+this term solves J q'' = 0. The engine's reactions at instants of the exact motion are compared with the solutions of
+both
+equations. The equations differ only in rows that the engine declares as regularised.
 """
 
 from __future__ import annotations
@@ -195,7 +196,7 @@ class VelocityTerm(BuildingTask):
 
 
 FREE_LOOP = FreeFourBar()
-MILLISECOND = round(FREE_LOOP.spacing / 1e-3)  # steps of 1 ms between samples
+MILLISECOND = round(FREE_LOOP.spacing / 1e-3)  # number of steps of 1 ms between samples
 
 # Quantity -> scenes of its chart. There is a scene of each mechanism whose page compares this quantity.
 CHARTED = {
@@ -223,7 +224,7 @@ MATRIX = tuple(
         tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1],
     )
 )
-# The variant "tuned" of each engine that declares compliant loops. Its compliance is small.
+# The variants "tuned" of engines that declare compliant loops. They have a small compliance.
 VELOCITY_TERMS = tuple(
     VelocityTerm(engine)
     for engine in (*registry.VARIANTS, *registry.OTHERS)
@@ -234,7 +235,7 @@ VELOCITY_TERMS = tuple(
 
 
 def rows_of(material: Material, scenes: Iterable[str]) -> list[Measurement]:
-    """The rows of `scenes` of all engines, extras included, without naive methods; their purpose becomes "sweep"."""
+    """The rows of all engines in `scenes`, without naive methods. The rows get the purpose "sweep"."""
     names = {*scenes}
     return [
         replace(row, purpose="sweep")
@@ -252,7 +253,7 @@ def comparable_error(row: Measurement | None, field: str = "angle") -> float:
 
 
 def word_and_reason(task: Capabilities, answer: Answer, line: str) -> tuple[str, str]:
-    """The word of a line and the reason of a refusal. The capability table decides, or else the stored answer."""
+    """The word of a line and the reason of a refusal, from the capability table or from the stored answer."""
     capability = task.method.capability
     if capability and (refusal := capability.refusal(ELEMENT_EXAMPLES[line])):
         return _word_of(refusal), str(refusal)
@@ -269,7 +270,7 @@ def matrix(answers: Mapping[Capabilities, Answer]) -> str:
 
 
 def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
-    """For each element that is not built: (engine, line, word of the table, reason)."""
+    """A row (engine, line, word of the table, reason) for each element that is not built."""
     found = [
         (task, line, *word_and_reason(task, answer, line))
         for task, answer in answers.items()

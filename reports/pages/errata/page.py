@@ -2,7 +2,8 @@
 
 Each slip has a document slips/NUMBER.md with the printed and the right formula, and a script that evaluates both.
 
-Engines give evidence that does not use the chapter's formulas. Accelerations are differences of their velocities.
+Engines give evidence that does not use the chapter's formulas. Accelerations are computed from the velocities in
+engines by differences.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ POINTS, MIDDLE = len(FIRST_DERIVATIVE), len(FIRST_DERIVATIVE) // 2
 
 @dataclass(frozen=True)
 class SampleWindow:
-    """POINTS successive samples of an engine's motion; formulas are evaluated at the middle sample."""
+    """POINTS successive samples of an engine's motion. Formulas are evaluated at the middle sample."""
 
     pose: Array  # (POINTS, bodies, 3).
     twist: Array  # (POINTS, bodies, 3).
@@ -86,7 +87,7 @@ def _pendulum(window: SampleWindow) -> dict[int, Values]:
     measured, turning = window.change(ends), window.change(window.twist[:, :, 2])
     # The x axis of a bar points from its pin to its end; the chapter measures phi from another direction.
     angle, rate = window.pose[MIDDLE, :, 2] + math.pi / 2, window.twist[MIDDLE, :, 2]
-    # The note states phi1'' itself, so the second derivative of the angle decides.
+    # The formula in the note is for phi1'', so the second derivative of the angle decides.
     twice = np.atleast_1d(SECOND_DERIVATIVE @ window.pose[:, 0, 2]) / WINDOW_SPACING**2
     values = {24: Values(rate[:1], turning[:1], twice)}
     for slip, (bar, printed) in errata.PENDULUM_SLIPS.items():
@@ -104,9 +105,9 @@ def _rolling(window: SampleWindow) -> dict[int, Values]:
     contact = HILL.hill * direction
     normal, rate = direction[MIDDLE], twist[MIDDLE, 2]
     tangent = perpendicular(normal)
-    advance = HILL.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # s; arc 0 is at the top
+    advance = HILL.hill * (math.atan2(normal[1], normal[0]) - math.pi / 2)  # arc length s, which is 0 at the top
     speed = rate / (1 / HILL.hill + 1 / HILL.radius)
-    # The pole is the body's point without velocity: the point of contact, and not the origin of the ground.
+    # The pole is the point of contact, which has no velocity; it is not the origin of the ground.
     at_origin, at_contact = (
         twist[MIDDLE, :2] + rotation_velocity(rate, point - pose[MIDDLE, :2]) for point in (0.0, contact[MIDDLE])
     )
@@ -205,7 +206,7 @@ class Erratum:
 
     printed, right: the printed and the right formula as text.
     deciding: a description of the derivative that decides.
-    dimensions: whether physical dimensions alone show the slip; the size of the error then depends on the units.
+    dimensions: whether physical dimensions are enough to show the slip.
     quoted, corrected: the printed and the right formula in LaTeX.
     script: the script that computes the values, or "" for a slip of wording.
     """
@@ -232,7 +233,7 @@ class Erratum:
 
     @property
     def by_tolerance(self) -> Mapping[float, float]:
-        """Tolerance -> error, if the chapter prints an integration without its tolerance; else empty."""
+        """Tolerance -> error of an integration that the chapter prints without its tolerance; empty for other slips."""
         return self.names.get("by_tolerance", {})
 
 
@@ -254,13 +255,13 @@ WORD_SLIPS = tuple(slip for slip in SLIPS_OF_CHAPTER if not slip.script)
 
 
 def digits(values: Iterable[float]) -> str:
-    """A vector as '(-2.2203, 1.5005)'; a single number without brackets."""
+    """A vector as a text such as '(-2.2203, 1.5005)', or a single number without brackets."""
     numbers = [f"{value:.5g}" for value in np.where(np.abs(list(values)) < 1e-12, 0.0, list(values))]
     return f"({', '.join(numbers)})" if len(numbers) > 1 else numbers[0]
 
 
 def missed(erratum: Erratum, pattern: str, between: str) -> str:
-    """The error at each tolerance of `by_tolerance`; `pattern` formats an error and a tolerance."""
+    """The errors at the tolerances of `by_tolerance` as text. `pattern` formats an error and a tolerance."""
     errors = erratum.by_tolerance.items()
     return between.join(pattern.format(number(error), number(tolerance)) for tolerance, error in errors)
 

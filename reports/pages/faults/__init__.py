@@ -1,1 +1,1 @@
-"""Faults of released engines, each with a script that shows it and the wrong formula that reproduces it."""
+"""Faults of released engines, with scripts that show the faults and wrong formulas that reproduce them."""

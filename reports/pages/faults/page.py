@@ -1,6 +1,6 @@
 """The page on faults of released engines. A document upstream/NAME.md describes a fault, with scripts that show it.
 
-A full run executes the scripts of SCRIPTS with the installed release. A fault that was repaired is no longer reported.
+A full run executes the scripts of SCRIPTS with the installed release, so repaired faults are not reported.
 """
 
 from __future__ import annotations
@@ -112,10 +112,10 @@ SCRIPTS: Mapping[str, FaultScript] = {
 
 @dataclass(frozen=True)
 class Offsets(Task):
-    """The velocity across its groove that pymunk's GrooveJoint creates, for several distances of its anchor.
+    """The velocity across the groove that pymunk's GrooveJoint creates, for several distances of the anchor.
 
-    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The line from its centre of mass to the
-    anchor has an angle of 45 degrees to the groove and one of the lengths `offsets` [m].
+    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The line from the centre of mass to the
+    anchor has an angle of 45 degrees to the groove. Its lengths are `offsets` [m].
     """
 
     offsets: tuple[float, ...]

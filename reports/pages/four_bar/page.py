@@ -34,8 +34,7 @@ SAMPLES_PER_REVOLUTION = 50
 
 @dataclass(frozen=True)
 class PrintedRates(Task):
-    """RK45 integrates equations (18.70) and (18.71). `tolerance` is relative; the absolute one is a thousandth of
-    it."""
+    """RK45 integrates equations (18.70) and (18.71). `tolerance` is relative, and 1000 times the absolute tolerance."""
 
     revolutions: int
     tolerance: float
@@ -92,9 +91,9 @@ OVERWRITTEN_STIFF = replace(mujoco.TUNED, variant="tuned, overwritten crank", dr
 
 RECOMMENDED = "free_four_bar"
 
-# Fig. 18.66 has nine poses at the ends of eight equal intervals; the last pose equals the first.
+# The printed figure has nine poses at the ends of eight equal intervals, and the last pose equals the first.
 INTERVALS = 8
-SAMPLES_PER_INTERVAL = 8  # the engines' step is then about 1e-2 s
+SAMPLES_PER_INTERVAL = 8  # this gives a step of about 1e-2 s in engines
 DRAWN_OVER_TRUTH = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
 # The readme's animation shows MOVING_METHODS and the exact motion, with steps of 1 ms.
@@ -142,7 +141,7 @@ def assemblies() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Numbers for the text: the compliance of MuJoCo's loops, and the fraction of a gap that pymunk closes."""
+    """Numbers for the text, such as the compliance of MuJoCo's loops and the fraction of a gap that pymunk closes."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
     wanted = ("3.6.0", "free_four_bar", "tuned")  # 3.6.0 is the last release that omits the velocity term of loops
     errors = [entry.error for entry in released().entries if (entry.version, entry.scene, entry.variant) == wanted]

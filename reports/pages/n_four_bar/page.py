@@ -1,4 +1,4 @@
-"""The page of the N-four-bar. It has one degree of freedom, and N + 1 at its two singular positions."""
+"""The page of the N-four-bar. This linkage has one degree of freedom, and N + 1 at its two singular positions."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ from reports.write.unmeasured import UNMEASURED
 
 @dataclass(frozen=True)
 class NeighbourGrowth(Task):
-    """The growth of a small difference between two motions of a chain, at `times` [s]."""
+    """A task with the growth of a small difference between two motions of a chain, at `times` [s]."""
 
     scene: LinkPendulum
     times: tuple[float, ...]
@@ -70,7 +70,7 @@ HEAVY_TIP_METHODS = (*MAIN_METHODS, sweeps(10), sweeps(1000), PENDULUM_SPARSE_NE
 
 
 def tip(ratio: float) -> LinkPendulum:
-    """A chain of three links for 1 s; the last link has `ratio` times the mass of the other links."""
+    """A chain of three links for 1 s. The last link has `ratio` times the mass of another link."""
     return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
 
 

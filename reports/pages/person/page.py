@@ -43,7 +43,7 @@ PERSONS = (SwayingOnOneFoot(), OneFoot(), TwoFeet())
 
 
 def ends(person: OneFoot) -> dict[str, Points]:
-    """Body -> its free end in the body's frame [m], which is the shoulder or the ankle of the lifted foot."""
+    """Body -> free end in the body's frame [m]. The free ends are the shoulder and the ankle of the lifted foot."""
     ahead = person.lengths - person._behind
     return {"trunk": ((float(ahead[2]), 0.0),), "right shank": ((float(ahead[4]), 0.0),)}
 

@@ -2,8 +2,8 @@
 
 Acrobot: issue 1714 of github.com/Farama-Foundation/Gymnasium publishes the drift of the energy at three steps. The data
 of the links are from `gymnasium/envs/classic_control/acrobot.py`. The issue does not state the initial state, which
-changes the drift by a factor of hundreds. Here both links are initially in line and at rest. Their angle is chosen so
-that RK4 has the published drift at the largest step.
+changes the drift by a factor of hundreds. Here both links are initially in line and at rest. The initial angle is
+chosen so that RK4 has the published drift at the largest step.
 
 Newton: the problems and bounds are copied from the tests 2, 3 and 10 in `newton/tests/test_physics_validation.py` of
 github.com/newton-physics/newton.
@@ -34,7 +34,7 @@ ACROBOT_START = 0.30488863  # rad; with this angle, RK4 has the drift PUBLISHED[
 
 
 def acrobot(angle: float = ACROBOT_START) -> Mechanism:
-    """Two links of 1 m, 1 kg and 1 kg m^2 in line and at rest; `angle` [rad] is 0 in the hanging pose."""
+    """Two links of 1 m, 1 kg and 1 kg m^2 in line and at rest. The `angle` [rad] is 0 in the hanging pose."""
     along = np.array([math.sin(angle), -math.cos(angle)])
     bodies = tuple(
         Body(name, 1.0, 1.0, (*(distance * along).tolist(), angle), (0.0, 0.0, 0.0))
@@ -147,7 +147,7 @@ NEWTON_FOUR_BAR = DrivenFourBar(**CRANK_ROCKER, start=0.0, rate=2 * math.pi, gra
 
 
 def pendulum(angle: float) -> Mechanism:
-    """A ball on a rod at rest; `angle` [rad] is 0 in the hanging pose."""
+    """A ball on a rod at rest. The `angle` [rad] is 0 in the hanging pose."""
     pose = (ROD_LENGTH * math.sin(angle), -ROD_LENGTH * math.cos(angle), angle)
     ball = Body("ball", 1.0, 0.4 * BALL_RADIUS**2, pose, (0.0, 0.0, 0.0))
     return Mechanism((ball,), (Pin("pivot", None, "ball", (0.0, 0.0), (0.0, ROD_LENGTH)),), (0.0, -NEWTON_GRAVITY))

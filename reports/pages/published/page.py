@@ -50,8 +50,8 @@ START_MULTIPLIERS = (98.5668703962410896057654982170, -6.12268834425566265503114
 
 
 def relative(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The test set's coordinates (..., 7) from the angles of the bodies (..., 7). Derivatives are converted
-    likewise."""
+    """The test set's coordinates (..., 7) from the angles of the bodies (..., 7). Derivatives of the angles give
+    derivatives of the coordinates."""
     k1, k2, k3, k4, k5, k6, k7 = np.moveaxis(angles, -1, 0)
     return np.stack([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7], axis=-1)
 
@@ -87,7 +87,7 @@ def compared(scene: Andrews) -> list[dict[str, Any]]:
 
 ANDREWS = Andrews()
 # Low and high precision from A01_specification.xml and A02_specification.xml of the IFToMM library. The library bounds
-# relative errors of a point's coordinates; here the numbers bound the largest angle error [rad].
+# relative errors of a point's coordinates; this page bounds the largest angle error [rad].
 IFTOMM_PRECISIONS = (1e-1, 1e-3)
 IFTOMM_CELLS = (*PHASE, *sweep_cells((NFourBar(),), VARIANTS, FULL))
 DIRECT_RK4 = DirectRK4()

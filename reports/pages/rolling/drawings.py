@@ -27,7 +27,7 @@ POINTS_PER_CURVE = 241
 class Roulette:
     """A rolling body and the path of one of its points.
 
-    point: in the body's frame [m].
+    point: coordinates in the body's frame [m].
     path: rotations [rad] of the body at the ends of the path.
     shown: rotations [rad] at which the body is drawn.
     ground, body: arcs [m] between which the curves are drawn, or None for the whole body.
@@ -69,8 +69,8 @@ def roulettes() -> tuple[Roulette, ...]:
 
 
 def outline(curve: Curve, arcs: tuple[float, float] | None = None) -> Array:
-    """Points (n, 2) [m] of a boundary between two arcs. Without arcs the boundary is whole, and that of a Side is a
-    square."""
+    """Points (n, 2) [m] of a boundary between two arcs. Without arcs, the points are on the whole boundary, which is a
+    square for a Side."""
     if isinstance(curve, Side) and arcs is None:
         half = curve.side / 2
         return half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]], dtype=float)
@@ -181,7 +181,7 @@ FRICTION_COEFFICIENTS = (0.2, 0.5, 1.0)
 
 
 def draw_acceleration() -> Figure:
-    """Two terms of the acceleration, that of rolling and that of a body pinned at C, for an ellipse and for discs."""
+    """Two terms of the acceleration, from rolling and from rotation about a pin at C, for an ellipse and for discs."""
     with drawing(3.6) as figure:
         left_panel, right = figure.subplots(1, 2)
         rolling = Rolling.at_angle(Ellipse(0.5, 0.3), Line())

@@ -71,7 +71,7 @@ def beyond_friction(material: Material) -> list[Observation]:
 
 
 def after_friction(material: Material) -> dict[str, Any]:
-    """`least`: the smallest ratio, over runs with a contact, of the error at the end to the largest comparable error.
+    """`least`: the smallest ratio of the error at the end to the largest comparable error, in runs with a contact.
 
     `slips`, `hops`: the instants at which a real contact slips and hops [s].
     """

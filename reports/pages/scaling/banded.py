@@ -27,12 +27,12 @@ class BandedChain(Engine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The order of RK4, 4. Pins are exact, because angles are the coordinates."""
+        """The order of RK4 is 4. Pins are exact, because angles are the coordinates."""
         return ConvergenceOrder(4, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """An estimate [s]. Calls of numpy take most of the time up to three links."""
+        """An estimate [s]. With up to three links, calls of numpy take most of the time."""
         return 50e-6 * max(1.0, len(mechanism.bodies) / 3)
 
     @validated

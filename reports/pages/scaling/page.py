@@ -34,7 +34,7 @@ from reports.write.unmeasured import UNMEASURED
 
 @dataclass(frozen=True)
 class TruthError(Task):
-    """The error of a long chain's reference motion at its end."""
+    """A task with the error of a long chain's reference motion at the end of the motion."""
 
     scene: LongPendulum
 
@@ -168,7 +168,7 @@ LARGE_SIZES = (50, 100)
 COSTLY_SIZES = (300, 1000)  # run for a few steps only, to measure their CPU time
 PENDULUM_SAMPLES = 5
 FEW_STEPS = 4
-MORE_STEPS = 40  # for cheap methods at COSTLY_SIZES, because their first step is slower than later steps
+MORE_STEPS = 40  # for cheap methods at COSTLY_SIZES, whose first step is slower than later steps
 
 FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
 # Error estimates are switched off, because their runs would increase the CPU time of a step.
@@ -207,7 +207,7 @@ SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
 
 
 def cells() -> tuple[Cell, ...]:
-    """The cells of each method at each size. A quick run has only those with the purpose "growth"."""
+    """The cells of each method at each size. A quick run has only the cells with the purpose "growth"."""
     chosen = []
     for engine in SCALING_METHODS:
         for links in (*SMALL_SIZES, *LARGE_SIZES, *COSTLY_SIZES):

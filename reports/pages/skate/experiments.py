@@ -35,7 +35,7 @@ WITHOUT_EULER: tuple[Engine, ...] = tuple(
 )
 
 # Rates [rad/s] between which a small rotation grows as in the linearised motion. Both rates are far above the initial
-# rate, and their squares are less than a thousandth of the square of the largest rate.
+# rate. Their squares are less than a thousandth of the largest squared rate.
 LINEAR_GROWTH = (2e-3, 4e-2)
 
 
@@ -96,7 +96,7 @@ COUNTED: tuple[tuple[str, Mechanism], ...] = (
 
 
 def counting(material: Material) -> list[Observation]:
-    """The degrees of freedom by rank and by Lie brackets, and whether the constraints are integrable, for COUNTED."""
+    """Observations on COUNTED: degrees of freedom by rank and by Lie brackets, and integrability of the constraints."""
     observations = []
     for name, mechanism in COUNTED:
         configuration, velocity = mechanism.degrees_of_freedom()

@@ -176,7 +176,7 @@ def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | 
 
 @cache
 def counted(scenes: tuple[Scene, ...], names: tuple[str, ...] | None = None) -> str:
-    """A Markdown table of degrees of freedom by rank and by Lie brackets; `names` replace the scenes' names."""
+    """A Markdown table of degrees of freedom by rank and by Lie brackets. `names` replace the names of the scenes."""
     body = []
     for name, scene in zip(names or tuple(scene.name for scene in scenes), scenes, strict=True):
         mechanism = scene.mechanism()
@@ -202,10 +202,9 @@ def uniform_conditions() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Tables, and functions that return a row of the sleigh or UNMEASURED.
+    """Tables, and functions that return UNMEASURED or a row of the sleigh.
 
-    at: a method's row with the step nearest to a step [s].
-    least: the row of an engine's variant with the least position error.
+    at: the method's row with the step nearest to a step [s]. least: the row with the least position error.
     finest: a method's row at the smallest step with a position error.
     """
     rows = Rows(material.sweep((SLEIGH_AHEAD,)))
@@ -227,7 +226,7 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 # The order of an ideal row is declared for the naive method, although it does not converge to the ideal motion. So the
-# gate compares its error with the bound.
+# gate compares the error of the naive method with a bound.
 DECLARED_ORDERS = {("sleigh_backwards", "pymunk default"): ConvergenceOrder(1, differences=1)}
 
 PAGE = scene_page(

@@ -35,7 +35,7 @@ LEAVING_SAMPLES = 3001
 
 @dataclass(frozen=True)
 class Leaving(Task):
-    """A task with the time at which a crank has left its dead centre, from the initial distance `angle` [rad]."""
+    """A task with the time at which a crank has left its dead centre. `angle`: initial distance [rad]."""
 
     angle: float
 
@@ -65,8 +65,8 @@ LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 
 def delay(material: Material) -> dict[str, Any]:
-    """`later`: the difference [s] between the times of the last two tasks of LEAVING. `nearer`: logarithm of the ratio
-    of their initial distances."""
+    """`later`: the difference [s] between the times of the last two tasks in LEAVING. `nearer`: logarithm of the ratio
+    of the initial distances in these tasks."""
     far, near = (material.finished(task) for task in LEAVING[-2:])
     later = near.number("when") - far.number("when") if far and near else UNMEASURED
     return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}

@@ -29,7 +29,7 @@ def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
 
 
 def heat_map(entries: Sequence[Entry], versions: Sequence[str]) -> Figure:
-    """A panel for each method, with a cell for each scene and version; it shows the power of ten of the error, or a
+    """A panel for each method with a cell for each scene and version. A cell shows the error's power of ten or a
     letter."""
     methods = variants(entries)
     scenes = {method: tuple(dict.fromkeys(e.scene for e in entries if e.variant == method)) for method in methods}

@@ -24,9 +24,9 @@ from reports.pages.your_loop.linkages import LINKAGES
 
 PAGE_STEP = 1e-3  # s
 MILLISECONDS_PER_SAMPLE = 10
-# The seed is the hash of the commit before this code was written, so it is not chosen by the results.
+# The seed is the hash of the commit before this code was written, so it was not chosen for its results.
 COMMIT = "007b1fa1"
-COUNT = 60  # mechanisms of each kind
+COUNT = 60  # number of random mechanisms of each kind
 LEAST_SAMPLES = 20
 SCALE_EXPONENT = 1.0  # each number is multiplied by 2**x with x between -SCALE_EXPONENT and SCALE_EXPONENT
 ANGLE_FIELDS = ("start", "angle", "start_angle")
@@ -34,7 +34,8 @@ UNCHANGED_FIELDS = ("links", "duration", "horizon", "branch", "friction", "densi
 
 
 def draw(scene: Scene, number: int) -> Mechanism:
-    """Random mechanism `number` like that of the scene, with scaled lengths, masses and rates, and random angles.
+    """Random mechanism `number` of the scene's kind. Its lengths, masses and rates are scaled, and its angles are
+    random.
 
     The draw is repeated until the reference motion has more than LEAST_SAMPLES samples.
     """
@@ -74,7 +75,7 @@ def _ideal(mechanism: Mechanism, samples: int, duration: float) -> IdealMotion:
 
 @dataclass(frozen=True)
 class Fresh(MethodTask):
-    """A task with the errors of one method in COUNT random mechanisms like that of a scene, by the exact solver."""
+    """A task with the errors of one method in COUNT random mechanisms of a scene's kind."""
 
     scene: Scene
     quantity: str = "angle"

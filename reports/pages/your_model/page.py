@@ -24,7 +24,7 @@ MODEL_FILES = Path(__file__).parent / "models"
 
 @dataclass(frozen=True)
 class ModelCheck(Task):
-    """A task with the check of a model in MODEL_FILES. Its key depends on the model's text, which is a field."""
+    """A task with the check of a model in MODEL_FILES. The task's key depends on the model's text, which is a field."""
 
     file: str
     text: str
@@ -93,8 +93,7 @@ def rows() -> list[dict[str, str]]:
 
 
 def other_models() -> dict[str, object]:
-    """How many models were tried, are readable unchanged, and are readable with elements switched off; and a table of
-    them."""
+    """A table of the models that were tried, and how many can be read unchanged or with elements switched off."""
     tried = rows()
     readable = [row for row in tried if row["bodies"]]
     body = [[MODEL_SOURCES[row["source"]], f"`{row['model']}`", _sentence(row)] for row in tried]

@@ -12,7 +12,7 @@ LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, PARKING, WHEELS, ROL
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:
-    """Return a take of a scene with these methods. It has the look of the scene in a lesson."""
+    """Return a take of a scene with these methods. The take has the look of the scene in a lesson."""
     plain = next((live for lesson in LESSONS for live in lesson.scenes if live.scene.name == scene.name), None)
     if plain is None:
         return Take(scene, methods)
