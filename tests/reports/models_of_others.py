@@ -1,4 +1,4 @@
-"""Reads models of other authors, and lists the number of bodies of each, or the reason why it is refused.
+"""Reads models of other authors. For each model the table has the number of bodies or the reason of a refusal.
 
 `python -m tests.reports.models_of_others` writes the table of the page `your_model`. It downloads two packages with pip
 into a temporary folder, and runs pymunk's examples without their windows.

@@ -124,7 +124,7 @@ def dies(*_: object) -> None:
 
 
 def is_free(file: Any) -> bool:
-    """Whether no process holds a lock on a file; unlike a process id, the lock ends with the process."""
+    """Whether no process holds a lock on a file. Unlike a process id, the lock ends with the process."""
     import fcntl
 
     try:

@@ -104,7 +104,7 @@ def local(url: str, address: str) -> bool:
 
 @pytest.fixture(scope="module")
 def running(chromium, address, files):
-    """A function that returns the page of a lesson with loaded engines. It opens each page once."""
+    """A function that returns the page of a lesson with loaded engines. The function opens each page once."""
     if "packages/mujoco.wasm" not in files:
         pytest.skip("the site was built without MuJoCo: tests/tools/browser.sh installs npm")
     pages: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""The failure atlas: its columns, predictions, file, page and command."""
+"""Tests of the failure atlas: columns, predictions, file, page and command."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def test_a_timed_command_reports_its_exit_status():
 
 
 def test_a_program_of_many_worlds_is_compared_with_the_judge_and_left_out_where_it_takes_too_long(monkeypatch):
-    """The program of the toy turns the last of its worlds by 0.25 rad, and is slow."""
+    """The toy's program is slow, and turns its last world by 0.25 rad."""
 
     def run_worlds(engine, mechanisms, dt, steps):
         poses = np.array([TRUTH.build(mechanism, dt)(1, steps).pose[-1] for mechanism in mechanisms])

@@ -1,4 +1,4 @@
-"""`crosscheck check`: its verdicts on models with known answers, and advice that can be copied."""
+"""Tests of `crosscheck check`: verdicts on models with known answers, and advice that can be copied."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ def test_the_damping_of_a_soft_drive_is_relative_to_its_prescribed_rate():
     for rate in (3.0, 2.0):
         twist = np.array([[0.0, 0.0, rate]])
         result = accelerations(at_rate, at_rate.pose, twist, 0.0, give)
-        # The row of a prescribed rate has no compliance, so that its acceleration is exactly -damping times the slip.
+        # The row of a prescribed rate has no compliance, so its acceleration is exactly -damping times the slip.
         assert result[0] == pytest.approx([0.0, 0.0, 10.0 * (3.0 - rate)], abs=1e-12)
 
 

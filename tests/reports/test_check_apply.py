@@ -1,4 +1,5 @@
-"""`crosscheck check` writes advised settings into a user's file, searches for settings, and checks folders."""
+"""Tests of `crosscheck check`: it writes advised settings into a user's file, searches for settings, and checks
+folders."""
 
 from __future__ import annotations
 

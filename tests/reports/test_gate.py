@@ -71,7 +71,7 @@ def test_two_orders_tell_what_any_order_costs(order_of, expected):
 
 @pytest.mark.parametrize("quantity", NAMES)
 def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
-    # With the second order, a tenth of the judge's step has a hundredth of its error, which is 1e-4.
+    # With the second order, the error at a tenth of the judge's step is a hundredth of the judge's error, 1e-4.
     result = theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
     assert [check.quantity for check in result if not check.passed] == [quantity]
     assert all(
@@ -86,7 +86,7 @@ def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
         (True, {"compliance": 0.005}, 5e-4),
         (True, {"stiffness": 25000.0}, 1e-4),
         (True, {"stiffness": 25000.0, "damping": 50.0}, 1e-4),
-        (False, {"stiffness": 25000.0, "damping": 50.0}, 2e-3),  # the compliance of a nonholonomic row is its damper's
+        (False, {"stiffness": 25000.0, "damping": 50.0}, 2e-3),  # a nonholonomic row has only a damper
     ],
 )
 def test_softness_costs_in_proportion_to_compliance_over_stiffness(holonomic, change, give):
@@ -119,8 +119,8 @@ BOUNDS: dict[str, tuple[Given, str, float]] = {  # (arguments of `theory`, quant
     "a promise of all others": ((JUDGE, ConvergenceOrder(4, rate=2), None, []), "angle", ROOM * 1e-12 + 1e-11),
     "an exact gap": ((JUDGE, ConvergenceOrder(4, gap=EXACT), None, []), "gap", 1e-12),
     "a reaction of a single step without a promise": ((JUDGE, UNKNOWN, None, []), "reaction", 0.5),
-    # The bound of the rate is that for 2 rad/s^2 during half a step of 1e-3 s, whatever the errors at coarser steps
-    # are.
+    # The bound is the change of the rate at 2 rad/s^2 in half a step of 1e-3 s. Errors at coarser steps do not change
+    # it.
     "the middle of a step": (
         (PRESCRIBED, ConvergenceOrder(2, rate=1), None, coarser("rate", at1=1e-2, at3=3.3e-3)),
         "rate", 1.25e-3 + 1e-10),

@@ -1,4 +1,4 @@
-"""Comparison of rows with the baseline: which numbers may change, and the message for a file that is no baseline."""
+"""Tests of the comparison with the baseline: which numbers may change, and messages for bad files."""
 
 from __future__ import annotations
 
@@ -293,7 +293,7 @@ def test_a_nudged_mechanism_is_another_rounding_of_all_that_enters_and_the_same_
         lambda each: next(joint for joint in each.joints if joint.name == "C").first_point[0],
     ):
         assert len(seen(value)) == 3
-        assert max(map(abs, seen(value))) <= 2 * 2.3e-16  # the quotient is rounded once more
+        assert max(map(abs, seen(value))) <= 2 * 2.3e-16  # the quotient has one more rounding
     assert Nudge(1)(mechanism) == Nudge(1)(mechanism)
     cells = nudged_cells(Cell(SCENE, Toy(), 1))
     assert len({cell.key for cell in cells}) == len(cells)

@@ -65,7 +65,7 @@ KINETIC = 0.5 * 3 * 5**2 + 0.5 * 7 * 1.8**2  # largest exact kinetic energy [J],
 
 
 def moved(**offsets: list[tuple[tuple[int, ...], float]]) -> Trajectory:
-    """The exact motion with offsets: `field=[(index, offset), ...]`."""
+    """The exact motion with the offsets `field=[(index, offset), ...]`."""
     fields = {name: getattr(TRUTH, name).copy() for name in ("pose", "twist", "reaction")}
     for name, changes in offsets.items():
         for index, offset in changes:
@@ -99,7 +99,7 @@ MOTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
         },
         {"angle_duration": 0.25},
     ),
-    "a speed": (  # the exact velocity is 1.2 m/s along x; (0.3, 0.4) m/s are added
+    "a speed": (  # the exact velocity is (1.2, 0) m/s, to which (0.3, 0.4) m/s is added
         {"twist": [((2, 1, 0), 0.3), ((2, 1, 1), 0.4)]},
         {"velocity": 0.5, "energy": 0.5 * 7 * (1.5**2 + 0.4**2 - 1.2**2) / KINETIC},
     ),
@@ -214,7 +214,7 @@ def test_every_field_of_a_measured_row_has_its_own_value():
     pose, twist, reaction = truth.pose.copy(), truth.twist.copy(), truth.reaction.copy()
     pose[2, 0, 0] += 1e-3  # Gap and position.
     pose[4, 1, 0] += 3e-3  # position.
-    pose[5, 0, 2] += 5e-3  # these are drive gap and angle
+    pose[5, 0, 2] += 5e-3  # drive gap, angle
     pose[6, 1, 2] += 7e-3  # angle.
     pose[-1, 1, 2] += 11e-3  # Beyond the horizon.
     twist[7, 1, 0] += 13e-3  # velocity.

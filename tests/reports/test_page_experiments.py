@@ -63,7 +63,7 @@ def test_an_impossible_scene_is_refused():
         ("links is 2", lambda: SpinningRing(links=2)),
         ("skate_on_slope", lambda: SkateOnSlope().motion([-1.0])),
         ("2 points and 3 angles", lambda: HeldBySkates(points=two)),
-        # Two skates never fix a body. With three skates it can turn about a point in which all axles meet.
+        # Two skates never fix a body. A body with three skates can turn about a point in which all axles meet.
         ("leave 1 freedom", lambda: HeldBySkates(points=two, angles=(0.5, -0.5))),
         ("leave 1 freedom", lambda: HeldBySkates(points=(*two, (0.0, 0.4)), angles=(math.pi / 2, math.pi / 2, 0.0))),
     ):

@@ -26,7 +26,7 @@ from reports.search.parts import (
 from reports.search.recipe import DEPENDENCE_LIMIT, SINGULAR_LIMIT, build, dependence
 
 CASES = range(40)
-# Digest of the recipes in the first test. If it changes, published seeds give other mechanisms than before.
+# Digest of the recipes in the first test. If the digest changes, published seeds give other mechanisms than before.
 DIGEST = "a70ba875a1348f267414ef4ca0cc7f05393aa4b0745440069cc1fdfeeff82ed7"
 
 

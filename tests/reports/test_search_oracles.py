@@ -281,8 +281,8 @@ def test_a_constant_declared_compliance_skips_the_check_and_one_that_falls_with_
 
 @dataclass(frozen=True)
 class Boasting(Lagrange):
-    """A method of first order that declares order 4. `warns`: which runs have a warning: "fine", "coarse", or "" for
-    none."""
+    """A method of first order that declares order 4. `warns` selects the runs that warn, which are "fine" or "coarse"
+    or none."""
 
     warns: str = ""
 

@@ -24,8 +24,8 @@ EVERY_KIND = ("--kind", "csv", "--kind", "svg", "--kind", "dxf")
 
 
 def ladder(count=101, low=0.2, high=1.3):
-    """The motion of a ladder of 1 m that slides down a wall. Its shapes are Cardan's circles with the radii 1 m and 0.5
-    m."""
+    """The motion of a ladder of 1 m that slides down a wall. The shapes of this motion are Cardan's circles with the
+    radii 1 m and 0.5 m."""
     t = np.linspace(low, high, count)
     return np.column_stack([t, 0.5 * np.cos(t), 0.5 * np.sin(t), -t])
 

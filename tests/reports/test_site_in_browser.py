@@ -43,7 +43,7 @@ def marked(*arguments: Any) -> Any:
 SCENES = [marked(lesson.name, live.word) for lesson in LESSONS for live in lesson.scenes]
 # Largest difference between an engine in the page and in Python, relative to the size of the motion. Differences are
 # below 1e-13 unless a motion amplifies rounding. The largest measured difference is 3e-7, in polygonal gears. With two
-# ellipses it is 1.3e-2, because MuJoCo's collision iteration ends at ccd_tolerance (1e-6).
+# ellipses the difference is 1.3e-2, because MuJoCo's collision iteration ends at ccd_tolerance (1e-6).
 APART = {"gears": 5e-2, "rolling": 1e-7, "wheels": 1e-6, "skate": 1e-9, "slider_crank": 1e-8}
 MUNK_APART = {"gears": 1e-5}
 

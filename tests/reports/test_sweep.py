@@ -111,7 +111,7 @@ def test_of_two_falling_parts_of_one_length_the_finer_gives_the_order():
         ([1e-14, 0.0], Verdict.ROUNDING, 0),
         ([1e-2, 1e-4, 1e-6, math.inf], Verdict.FALLS, 3),  # an unknown error is left out
         ([1e-2, 2e-5, 2e-5, 2e-5], Verdict.PLATEAU, 0),
-        ([1e-8, 1e-8, 1e-8, 1e-8], Verdict.PLATEAU, 0),  # it starts at its plateau
+        ([1e-8, 1e-8, 1e-8, 1e-8], Verdict.PLATEAU, 0),  # all errors are on the plateau
         ([1e-2, 1e-4, 1e-6, 1e-6], Verdict.LEVELS, 3),
         ([1e-6, 1e-5, 1e-4, 1e-3], Verdict.GROWS, 0),
         ([1e-2, 1e-4, 1e-6, 1e-3], Verdict.ERRATIC, 3),

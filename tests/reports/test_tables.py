@@ -102,8 +102,8 @@ def at_steps() -> Iterator[list[Measurement]]:
     yield falling("mujoco tuned", POWER)
     yield falling("mujoco tuned", (1e-2, 1e-13))  # falls to rounding
     yield falling("mujoco tuned", (1e-2, 3e-5, 2e-5, 2e-5))
-    yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # the errors level off
-    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # the least error is at 1 ms
+    yield falling("mujoco tuned", (1e-2, 3e-5, 2.9e-5))  # The errors level off.
+    yield falling("mujoco tuned", (1e-2, 1e-4, 1e-6, 1e-3))  # The least error is at 1 ms.
     # Two errors cancel at the second step, so the cell has the plateau and a remark on this step.
     yield falling("mujoco tuned", (1e-2, 1e-4, 1e-3, 1.1e-3, 1.11e-3))
     # Two errors cancel at a step that is not in the cell, so there is no remark.

@@ -174,7 +174,7 @@ def test_the_page_counts_changes_and_names_the_documented_ones(monkeypatch):
 
 
 def toy(folder: Path, version: str, source: str) -> Path:
-    """Write an installed package of a toy engine. Its error is `error()` of `source` times the step squared."""
+    """Write an installed package of a toy engine. The toy's error is `error()` of `source` times the step squared."""
     index = folder / version
     (index / "toyengine").mkdir(parents=True)
     (index / "toyengine" / "__init__.py").write_text(source)
@@ -231,8 +231,8 @@ def test_a_worse_or_slower_build_is_reported_and_its_output_is_contained(here, c
     assert (line["verdict"], document["status"]) == ("WORSE", 1)
     assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
-    assert not (here / "crosscheck-results").exists()  # rows of a build are not stored, since the build may change
-    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # a notebook makes this call
+    assert not (here / "crosscheck-results").exists()  # The build may change, so its rows are not stored.
+    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # A notebook makes this call.
     assert [column.trouble for column in comparison.columns] == ["", ""]
     assert comparison.complaint == ""
     # The ratio of CPU times is 1, since the toy returns a constant cost.

@@ -1,5 +1,4 @@
-"""The gates of the grid detect a wrong number in an engine's model, for each number of each scene, or a reason is
-given."""
+"""Tests that the gates detect each wrong number in an engine's model, or that there is a reason why not."""
 
 from __future__ import annotations
 
@@ -35,7 +34,8 @@ NOTHING = 0.01
 # Scenes that are too long for every mistake, or in which right models fail before their end [s].
 DURATIONS = {
     "point_pendulum": 2.0,  # With the steps of the grid, the phase is lost before the end at 2000 s.
-    "n_four_bar_2": 0.3,  # This ends before the first singular position, where right models diverge from each other.
+    # The motion ends before the first singular position, where right models diverge from each other.
+    "n_four_bar_2": 0.3,
     "n_four_bar_10": 0.3,
     "n_four_bar_40": 0.2,
     "pendulum_10": 1.0,
@@ -132,7 +132,7 @@ def short(scene: Scene) -> Scene:
 
 
 def excuse(scene: Scene, engine: Engine, mistake: Mistake) -> str:
-    """The reason why a mistake has no effect; "" if it must be detected."""
+    """The reason why a mistake has no effect, or "" if it must be detected."""
     expected = UNNOTICEABLE.get((scene.name, str(mistake)), "")
     return expected or UNNOTICEABLE_IN.get((scene.name, engine.name, str(mistake)), "")
 
@@ -163,7 +163,7 @@ def whole(engines: Mapping[Engine, float]) -> list[MistakeTrial]:
 
 
 def representative(trials: Iterable[MistakeTrial], each: int = 2) -> list[MistakeTrial]:
-    """The trials with `each` mistakes only, each of a different kind. Mistakes with an excuse are left out, and kinds
+    """The trials with at most `each` mistakes of different kinds. Mistakes with an excuse are left out, and kinds
     that are rare in the engine's earlier trials are preferred."""
     met: dict[str, Counter[str]] = {}
     out = []

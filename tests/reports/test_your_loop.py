@@ -31,7 +31,7 @@ def lines(name: str) -> str:
 
 
 def error_of(scene: Scene, poses: Callable[[], list[tuple[float, float, float]]], advance: Callable[[], None]) -> float:
-    """The largest angle error [rad] of a model over all samples; `advance` moves it to the next sample."""
+    """The largest angle error [rad] of a model over all samples. `advance` moves the model to the next sample."""
     truth = scene.motion(np.linspace(0, scene.duration, scene.samples + 1)).pose
     worst = 0.0
     for exact in truth[1:]:
