@@ -2,8 +2,7 @@
 
 A check fails if its error exceeds both a floor and NOISE_MARGIN times the noise of the case. The noise is the largest
 change of the result if the case is slightly shifted, turned and rounded differently, or if the solver has a smaller
-tolerance (`Engine.stricter`). Nearly dependent rows, large mass ratios
-and combined runs increase the noise.
+tolerance (`Engine.stricter`). Nearly dependent rows, large mass ratios and combined runs increase the noise.
 """
 
 from __future__ import annotations

@@ -8,9 +8,8 @@
 
 A case depends only on its seed, number, kinds and decades. The integers of a case are drawn by numpy's PCG64, so they
 are the same on every machine. A mechanism has 1 to 6 bodies. Most bodies are connected to an earlier body or to the
-ground by a
-joint
-of the selected kinds. Up to three more joints close loops. Every mechanism has gravity or moves at the start.
+ground by a joint of the selected kinds. Up to three more joints close loops. Every mechanism has gravity or moves at
+the start.
 The rows of the joints are independent (`recipe.DEPENDENCE_LIMIT`). The mechanism has a degree of freedom or a drive.
 """
 
@@ -71,8 +70,7 @@ def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decad
 
     Masses are from 0.1 to 10 kg, and lengths from 0.1 m to some metres. `decades` is the number of powers of ten by
     which both ranges are extended at both ends. The units of length, mass and time change by up to the same number of
-    powers. Raises
-    InvalidMechanism for unknown kinds or for no kinds.
+    powers. Raises InvalidMechanism for unknown kinds or for no kinds.
     """
     if not kinds or not {*kinds} <= {*ALL_KINDS, *SINGULAR_KINDS}:
         raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(ALL_KINDS)}")

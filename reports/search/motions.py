@@ -44,8 +44,7 @@ Floors = dict[str, float]
 MOTION_SPAN = 0.4
 MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS is the number of steps between two samples.
 # Largest ratio of an error to the error that the declared order predicts from the run with twice the step. The margin
-# covers the next
-# power of the step and the sampling of the error (as in `engines.conformance.moving`).
+# covers the next power of the step and the sampling of the error (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
 # Smallest tolerances, relative to the motion. They cover rounding in combined runs and in drives of large inertias.
 ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
@@ -251,9 +250,8 @@ class _Case:
         step.
 
         If the compliance depends on the step, its effect has the declared order only while the compliance is small. So
-        the judge is
-        run with the same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of two changes
-        of the judge's run.
+        the judge is run with the same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of
+        two changes of the judge's run.
         The first change is that with doubled steps, since the engine integrates other coordinates. For the second
         change, the compliance is multiplied by the largest ratio of inverse inertias along the motion. The judge
         evaluates the inverse inertia at each pose, and MuJoCo only at the start.

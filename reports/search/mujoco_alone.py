@@ -1,8 +1,8 @@
 """Random models in MuJoCo's format, and their equations of motion at the start.
 
-No adapter is used, so a finding is a fault of MuJoCo. A model is a planar tree of slides and hinges with
-`connect`, `weld`, `joint` and `tendon` equalities. The equations are written in the coordinates of the tree. Complex
-steps give derivatives without truncation error. Only the compliance (`efc_R`) of the constraints comes from MuJoCo.
+No adapter is used, so a finding is a fault of MuJoCo. A model is a planar tree of slides and hinges with `connect`,
+`weld`, `joint` and `tendon` equalities. The equations are written in the coordinates of the tree. Complex steps give
+derivatives without truncation error. Only the compliance (`efc_R`) of the constraints comes from MuJoCo.
 """
 
 from __future__ import annotations
@@ -223,8 +223,8 @@ class StartEquations:
 
     `root` (coordinates, coordinates): a root S of the mass matrix S^T S. `free`: the product of S and the accelerations
     without equalities. `rows`: the Jacobian J of each equality. `right`: the product of J and the accelerations.
-    `bent`: the part
-    of `right` that comes from the curve of an equality. `rates` (coordinates,): velocities that satisfy the equalities.
+    `bent`: the part of `right` that comes from the curve of an equality. `rates` (coordinates,): velocities that
+    satisfy the equalities.
     """
 
     root: Array

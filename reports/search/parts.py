@@ -63,16 +63,15 @@ class RecipeLink:
     """A joint or a force element of a recipe, described by integers.
 
     `first`, `second`: numbers of the bodies, where `first` may be the ground, 0. `at`: position relative to the second
-    body,
-    in tenths of that body's size. Other lengths are in the same unit. `rims`: the curves of both bodies of a roll.
+    body, in tenths of that body's size. Other lengths are in the same unit. `rims`: the curves of both bodies of a
+    roll.
 
     `turn`: a direction in the world, in steps of 0.3 rad. Slots, blades, forces and tangents of contacts have this
-    direction. The first body's material is to the left of the tangent. `more`: the distance from `at` to
-    the point
-    that defines the slot's line, or the rate of a drive in steps of 0.5 rad/s. For gears, forces and torques, half of
-    `more` is the ratio or the strength. For rods, springs and dampers, `more` and `turn` are the distance and the
-    direction of the point on the first body. `strength` of a spring or damper is a step of `ladder`. `rest` of a spring
-    is the deflection at the start, in tenths of the length or in steps of 0.3 rad.
+    direction. The first body's material is to the left of the tangent. `more`: the distance from `at` to the point that
+    defines the slot's line, or the rate of a drive in steps of 0.5 rad/s. For gears, forces and torques, half of `more`
+    is the ratio or the strength. For rods, springs and dampers, `more` and `turn` are the distance and the direction of
+    the point on the first body. `strength` of a spring or damper is a step of `ladder`. `rest` of a spring is the
+    deflection at the start, in tenths of the length or in steps of 0.3 rad.
 
     A toggle is a rod between two points on opposite sides of `at`, where a pin connects the same bodies. The distances
     from `at` along `turn` are `more` and half of `more`. The line of the rod misses `at` by 10^-strength sizes. The

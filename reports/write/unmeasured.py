@@ -1,9 +1,8 @@
 """Missing numbers in templates. A clause that lacks a number is left out.
 
 A lookup without a row returns `UNMEASURED`. UNMEASURED is false and NaN, and each of its attributes is UNMEASURED. A
-template
-prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes the text up to `{% endfilter %}` if this text contains
-UNKNOWN_MARK. `without_marks` replaces other marks by NOT_MEASURED.
+template prints NaN as UNKNOWN_MARK. `{% filter if_measured %}` removes the text up to `{% endfilter %}` if this text
+contains UNKNOWN_MARK. `without_marks` replaces other marks by NOT_MEASURED.
 """
 
 from __future__ import annotations

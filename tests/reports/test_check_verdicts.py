@@ -1,8 +1,7 @@
 """Verdicts of `crosscheck check` on users' models, compared with integrations that share no code with the judge.
 
 The models in `inputs` follow public reports of users; the first line of a model names the report. The engine runs the
-file
-itself; the ideal motion is integrated with multipliers, in MuJoCo's joint coordinates or in absolute coordinates.
+file itself; the ideal motion is integrated with multipliers, in MuJoCo's joint coordinates or in absolute coordinates.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -42,8 +41,7 @@ STEP = 1e-3  # s, of pymunk
 QUICK = SweepPlan(5.0, quick=True)
 G = 9.81
 # The errors of the judge are 1e-10, and the errors of both integrations are 1e-11. The motions amplify these errors up
-# to 200
-# times, and the smallest compared error is 1e-4. The measured difference was 2e-7.
+# to 200 times, and the smallest compared error is 1e-4. The measured difference was 2e-7.
 CLOSE = 1e-6
 
 

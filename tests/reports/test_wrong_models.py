@@ -163,8 +163,8 @@ def whole(engines: Mapping[Engine, float]) -> list[MistakeTrial]:
 
 
 def representative(trials: Iterable[MistakeTrial], each: int = 2) -> list[MistakeTrial]:
-    """The trials with at most `each` mistakes of different kinds. Mistakes with an excuse are left out, and kinds
-    that are rare in the engine's earlier trials are preferred."""
+    """The trials with at most `each` mistakes of different kinds. Mistakes with an excuse are left out, and kinds that
+    are rare in the engine's earlier trials are preferred."""
     met: dict[str, Counter[str]] = {}
     out = []
     for trial in trials:

@@ -99,8 +99,7 @@ def stiffest_hanging(scene: LinkPendulum) -> float:
 
 
 # Map -> (function that makes a scene from a parameter value, function that returns a scene's frequency). Motions of
-# chains last 0.5 s, because chaos amplifies
-# errors in longer motions.
+# chains last 0.5 s, because chaos amplifies errors in longer motions.
 SCENES_AND_FREQUENCIES: Mapping[str, tuple[Callable[[float], Scene], Callable[[Any], float]]] = {
     "coupler": (lambda x: FreeFourBar(density=(1.0, x, 1.0)), lambda scene: 1 / scene.mechanism().time_scale),
     "rate": (lambda x: DrivenFourBar(rate=x, revolutions=x * 0.5 / (2 * math.pi)), lambda scene: scene.rate),

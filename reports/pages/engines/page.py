@@ -2,8 +2,7 @@
 
 The velocity term of a loop is the right-hand side of J q'' = -J' q' in the tree's coordinates q. An engine that omits
 this term solves J q'' = 0. The engine's reactions at instants of the exact motion are compared with the solutions of
-both
-equations. The equations differ only in rows that the engine declares as regularised.
+both equations. The equations differ only in rows that the engine declares as regularised.
 """
 
 from __future__ import annotations

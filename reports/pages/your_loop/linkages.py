@@ -2,9 +2,8 @@
 
 `linkages.json` has a list of elements for each linkage; the bodies come first. `["bars", density, group, corners]` is a
 body of thin bars between corners, which form a closed polygon if there are more than two corners. `["pin", a, b,
-point]` is a pivot
-between two bodies. Bodies are numbered from 0, and -1 is the ground. Points of bars, balls, boxes and pins are in the
-frame of the space. Points of grooves, springs and rods are in the frames of the bodies.
+point]` is a pivot between two bodies. Bodies are numbered from 0, and -1 is the ground. Points of bars, balls, boxes
+and pins are in the frame of the space. Points of grooves, springs and rods are in the frames of the bodies.
 """
 
 from __future__ import annotations
