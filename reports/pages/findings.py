@@ -141,7 +141,6 @@ class Finding:
 
     @property
     def alternative(self) -> str:
-        """The picture's alternative text."""
         return f"{self.y} against {self.x}: {'; '.join(line.label for line in self.lines)}"
 
     def figure(self) -> Figure:
@@ -304,5 +303,4 @@ def findings(pages: Mapping[Page, Material]) -> list[Finding]:
 
 
 def pictures(sound: Iterable[Finding]) -> dict[str, str]:
-    """SVG pictures of findings by file name."""
     return {finding.picture: svg(finding.figure(), finding.title) for finding in sound}

@@ -42,7 +42,6 @@ class Symptom:
 
 @cache
 def symptoms() -> tuple[Symptom, ...]:
-    """The rows of the table in `symptoms.md`."""
     _, _, *lines = Path(__file__).with_name("symptoms.md").read_text(encoding="utf-8").splitlines()
     return tuple(Symptom(*(cell.strip() for cell in line.strip("|").split("|"))) for line in lines)
 

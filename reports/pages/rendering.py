@@ -61,7 +61,6 @@ def scene_context(scene: Scene, rows: list[Measurement], page: Page, material: M
 
 
 def _charts(page: Page, rows: list[Measurement], material: Material) -> dict[str, str]:
-    """The page's SVG pictures by name."""
     pictures_by_name: dict[str, str] = {}
     drawable = charts.drawable(rows, page.quantity)
     if any(row.cpu > 0 for row in drawable):

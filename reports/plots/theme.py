@@ -97,19 +97,16 @@ DIGESTED = re.compile(r"\b([mpCh][0-9a-f]{10})\b")
 
 
 def settings() -> AbstractContextManager[None]:
-    """A context in which matplotlib has our settings instead of the user's."""
     plain: dict[Any, Any] = {**matplotlib.rcParamsDefault, **RC_SETTINGS}
     return matplotlib.rc_context(plain)
 
 
 def new_figure(height: float, theme: Theme = LIGHT, width: float = FIGURE_WIDTH) -> Figure:
-    """An empty figure; sizes are in inches."""
     return Figure(figsize=(width, height), facecolor=theme.paper, layout="constrained")
 
 
 @contextmanager
 def drawing(height: float, width: float = FIGURE_WIDTH) -> Iterator[Figure]:
-    """A context with a new figure and our `settings`."""
     with settings():
         yield new_figure(height, LIGHT, width)
 
@@ -134,7 +131,6 @@ class PowersOfTen(LogFormatterSciNotation):
 
 
 def _in_powers(figure: Figure) -> None:
-    """Replace the default formatters of logarithmic axes by PowersOfTen."""
     for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"):
         if type(axis.get_major_formatter()) is LogFormatterSciNotation:
             axis.set_major_formatter(PowersOfTen())

@@ -158,8 +158,6 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
 def error_against_step(
     rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle"
 ) -> Figure:
-    """A panel for each scene with error against step and guides with the slopes 1, 2 and 4."""
-
     def pairs(members: Iterable[Measurement]) -> Pairs:
         return [(1e3 * row.step, getattr(row, field)) for row in members]
 

@@ -67,8 +67,6 @@ class Chunk(Task):
 
 @dataclass(frozen=True)
 class CaseResult:
-    """A case of a chunk and its result."""
-
     chunk: Chunk
     number: int
     kinds: tuple[str, ...]
@@ -127,7 +125,6 @@ def stored_answers(store: Store, chunks: Sequence[Chunk]) -> dict[Chunk, Answer]
 
 
 def chunk_to_json(chunk: Chunk) -> str:
-    """A chunk as JSON, with the name of its subject."""
     numbers = [chunk.seed, chunk.first, chunk.count, list(chunk.kinds), chunk.decades, list(chunk.oracles)]
     return json.dumps([chunk.subject.name, *numbers])
 
@@ -184,7 +181,6 @@ FINDINGS_HEADER = ("subject", "check", "error", "may be", "seed", "decades", "ca
 
 
 def finding_rows(cases: Iterable[CaseResult]) -> list[list[str]]:
-    """A row under FINDINGS_HEADER for each failing check of each case."""
     out = []
     for case in cases:
         case_columns = [str(case.chunk.seed), str(case.chunk.decades), str(case.number), ",".join(case.kinds)]

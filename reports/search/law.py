@@ -35,8 +35,6 @@ Errors = Mapping[str, tuple[float, float]]  # (error, tolerance) by check.
 
 @dataclass(frozen=True)
 class CheckSkipped:
-    """The reason why a check does not apply to a case."""
-
     reason: str
 
 

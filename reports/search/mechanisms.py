@@ -60,7 +60,6 @@ Kinds = Sequence[str]
 
 @validated
 def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decades: Decades = 0) -> Mechanism:
-    """The mechanism that is built from `recipe` with the same arguments."""
     return build(recipe(seed, number, kinds, decades))
 
 
@@ -190,7 +189,6 @@ class _Draw(Integers):
 
 
 def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
-    """A link and, before it, the pins that it needs."""
     if link.kind == FOLD:
         return RecipeLink("pin", 0, link.first, link.far), RecipeLink("pin", 0, link.second, link.at), link
     return (RecipeLink("pin", link.first, link.second, link.at), link) if link.kind == TOGGLE else (link,)

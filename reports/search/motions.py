@@ -149,7 +149,6 @@ class _Case:
 
     @cached_property
     def forces(self) -> tuple[Array, ...]:
-        """Scales of reactions."""
         acting = max(driving_force(self.mechanism, twist) for twist in self.truth.twist)
         arms = np.where(self.mechanism.is_angular, self.mechanism.length_scale, 1.0)
         return np.nan_to_num(self.truth.reaction), arms * max(acting, np.finfo(float).tiny)

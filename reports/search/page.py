@@ -179,7 +179,6 @@ def _finding_rows(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Ans
 
 
 def _command(case: CaseResult) -> str:
-    """The command that runs a case again and writes its script."""
     chunk = case.chunk
     name, variant = ("mujoco", "alone") if isinstance(chunk.subject, Alone) else chunk.subject.name.split(" ", 1)
     command = ["crosscheck", "search", "--engine", name, "--variant", variant, "--seed", str(chunk.seed)]

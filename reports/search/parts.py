@@ -102,7 +102,6 @@ class Recipe:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of the joints and forces, in the order of ALL_KINDS."""
         return tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if any(link.kind == kind for link in self.links))
 
 
@@ -113,7 +112,6 @@ class Integers:
         self._random = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
 
     def whole(self, low: int, high: int) -> int:
-        """Draw an integer from `low` to `high`, both included."""
         return int(self._random.integers(low, high + 1))
 
     def two(self, most: int) -> tuple[int, int]:
@@ -129,8 +127,6 @@ def ladder(step: int) -> Decimal:
 
 
 def case_to_json(case: Any) -> str:
-    """A recipe or a `RawModel` as JSON without default values."""
-
     def plain(value: Any) -> Any:
         if not is_dataclass(value):
             return [plain(item) for item in value] if isinstance(value, tuple) else value

@@ -71,7 +71,6 @@ def _is_built(engine: Engine, kind: str, number: int) -> bool:
 
 
 def all_subjects() -> list[Subject]:
-    """All variants of the installed engines, and MuJoCo alone."""
     return [*(Adapted(engine) for engine in (*VARIANTS, *INSTALLED)), Alone()]
 
 

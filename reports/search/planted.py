@@ -70,7 +70,6 @@ class Misbuilt(Mechanism):
         """Accept joints that are open at the start."""
 
     def reaction(self, *arguments: Any, **options: Any) -> Array:
-        """Reactions on the rows of the right mechanism."""
         return self.right.reaction(*arguments, **options)
 
     def closed(self, twist: Array) -> Misbuilt:
@@ -103,7 +102,6 @@ class PlantedFault:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of joints and forces of the random mechanisms."""
         return ("pin",) if self.kind not in ALL_KINDS else tuple(dict.fromkeys(("pin", self.kind)))
 
     def __call__(self, mechanism: Mechanism) -> Mechanism:
@@ -151,7 +149,6 @@ class PlantedFault:
 
 
 def kind_of(part: Any) -> str:
-    """Name of a joint or a force element in recipes."""
     return re.sub(r"(?<!^)(?=[A-Z])", "-", type(part).__name__).lower()
 
 

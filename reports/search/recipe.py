@@ -188,7 +188,6 @@ class Standing:
         return _beside(self._places[link.second], link.at, self._sizes[link.second])
 
     def _points(self, link: RecipeLink) -> tuple[Vector, Vector]:
-        """The link's position [m] in the frame of each body."""
         at = self._at(link)
         return self._local(link.first, at), self._local(link.second, at)
 
@@ -229,7 +228,6 @@ class Standing:
         return Held(joint, rows)
 
     def mechanism(self, held: Sequence[Held], forces: Sequence[tuple[RecipeLink, int]] = ()) -> Mechanism:
-        """The mechanism with these joints and forces, and with velocities that satisfy the joints."""
         joints = tuple(closed.joint for closed in held)
         twists = self.allowed(held).tolist()
         bodies = tuple(replace(body, twist=tuple(twist)) for body, twist in zip(self.bodies, twists, strict=True))
@@ -238,7 +236,6 @@ class Standing:
         return Mechanism(bodies, joints, (down_x, down_y), acting)
 
     def independent(self, held: Sequence[Held]) -> bool:
-        """Whether the dimensionless rows of the joints are independent."""
         if not held:
             return True
         scaled, norm, _ = self._scaled(held)

@@ -216,7 +216,6 @@ def _model_lines(text: str) -> list[str]:
 
 
 def _pymunk_lines(model: Any, sweeps: int) -> list[str]:
-    """Lines of code that build a space. Raises Unsupported for objects that can't be written."""
     settings = f"space.gravity, space.iterations = {tuple(model.space.gravity)!r}, {sweeps}"
     return ["space = pymunk.Space()", settings, *object_lines(model.space, model.bodies)]
 

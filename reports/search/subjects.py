@@ -43,8 +43,6 @@ class OracleResult:
 
 @dataclass(frozen=True)
 class Adapted:
-    """An engine with its adapter; cases are recipes."""
-
     engine: Engine
     case: ClassVar[type] = Recipe
     kinds: ClassVar[tuple[str, ...]] = ALL_KINDS

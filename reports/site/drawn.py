@@ -96,7 +96,6 @@ def body_lines(mechanism: Mechanism, look: Look, name: str) -> list[Stroke]:
 
 
 def body_shape(mechanism: Mechanism, look: Look, name: str) -> str:
-    """Return the lines and the pins of a body as SVG."""
     radius = number(PIN * mechanism.length_scale)
     pins = [
         f'<circle class="pin" cx="{number(x)}" cy="{number(y)}" r="{radius}"/>' for x, y in pins_of(mechanism, name)
@@ -105,7 +104,6 @@ def body_shape(mechanism: Mechanism, look: Look, name: str) -> str:
 
 
 def pins_of(mechanism: Mechanism, name: str) -> list[Point]:
-    """Return the points of a body at which it is pinned [m]."""
     pins = [joint for joint in mechanism.joints if isinstance(joint, Pin)]
     return list(dict.fromkeys(point for pin in pins for owner, point in pin.points if owner == name))
 
@@ -173,7 +171,6 @@ def box(mechanism: Mechanism, look: Look, pose: Array) -> tuple[float, float, fl
 
 
 def index_of(mechanism: Mechanism, name: str | None) -> int:
-    """Return the index of a body, or -1 for the ground."""
     return -1 if name is None else mechanism.body_index(name)
 
 
@@ -214,7 +211,6 @@ def place_of(joint: Joint, first: Array, second: Array) -> Array:
 
 
 def loose(mechanism: Mechanism) -> list[Skate | Roll]:
-    """Return the skates and rolling contacts."""
     return [joint for joint in mechanism.joints if isinstance(joint, Skate | Roll)]
 
 

@@ -45,7 +45,6 @@ def write_site(output: Path, files: Mapping[str, bytes]) -> int:
 
 
 def compressed_size(files: Mapping[str, bytes]) -> int:
-    """Return the total size of the files after gzip [bytes]."""
     return sum(len(gzip.compress(content, 9, mtime=0)) for content in files.values())
 
 

@@ -46,7 +46,6 @@ class Documents:
 
 
 def require_packages() -> None:
-    """Raise BadInput if packages of the extra `site` are missing."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
         raise BadInput(f"the site needs packages that are not installed ({', '.join(missing)}): pip install '.[site]'")
@@ -126,7 +125,6 @@ def configure(extra: Path) -> dict[str, Any]:
 
 
 def furo_colours(theme: Theme) -> dict[str, str]:
-    """The colours of charts as variables of Furo."""
     return {
         "color-brand-primary": theme.ink,
         "color-brand-content": theme.second,

@@ -36,7 +36,6 @@ def mathml(formula: str, displayed: bool = False) -> str:
 
 
 def render_html(text: str) -> str:
-    """Return a short Markdown text as HTML."""
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin  # pyright: ignore[reportMissingImports]
 

@@ -183,5 +183,4 @@ def with_published_numbers(
 
 
 def within_factor(now: float, before: float, factor: float) -> bool:
-    """Whether two times agree within a factor, or are both NaN."""
     return before / factor <= now <= before * factor or (now != now and before != before)

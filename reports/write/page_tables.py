@@ -143,7 +143,6 @@ def advice_table(advised: Iterable[Advice], name: str, enforcement: Mapping[str,
 def advice_lines(
     advised: Iterable[Advice], name: str, enforcement: Mapping[str, str] | None = None
 ) -> tuple[list[str], list[list[str]]]:
-    """The header and the lines of the table of recommended settings."""
     unit = quantity(name).unit
     body = []
     for setting in advised:

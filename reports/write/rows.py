@@ -42,7 +42,6 @@ class Rows(tuple[Measurement, ...]):
         return row if row is not None and max(row.step / step, step / row.step) < NEAREST_WITHIN else UNMEASURED
 
     def at(self, step: float) -> Any:
-        """The row at this step [s] if its run can be compared."""
         rows = (row for row in self if is_step(row.step, step))
         return next((row for row in rows if Outcome(row.outcome).comparable), UNMEASURED)
 

@@ -34,7 +34,6 @@ def words_of(cell: str | float) -> str:
 
 
 def milliseconds(seconds: float, unknown: str = DASH) -> str:
-    """A CPU time in milliseconds, without the unit."""
     return number(1e3 * seconds, unknown=unknown)
 
 
@@ -72,7 +71,6 @@ def text_table(
 
 
 def display_width(text: str) -> int:
-    """The width of a text on a terminal."""
     if text.isascii():
         return len(text)
     return sum(0 if combining(char) else 2 if east_asian_width(char) in "WF" else 1 for char in text)
@@ -100,7 +98,6 @@ ERROR_HEADER = ("method", "outcome", "step", *(f"{q.label} [{q.unit}]" for q in 
 
 
 def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """The lines of a table with ERROR_HEADER, sorted by method and step."""
     return [
         [row.method, row.outcome, step_words(row.step)]
         + [number(getattr(row, q.name)) for q in QUANTITIES]
@@ -111,7 +108,6 @@ def error_rows(rows: Iterable[Measurement]) -> list[list[str]]:
 
 
 def order_rows(swept: Iterable[Sweep], quantities: Sequence[str]) -> list[list[str]]:
-    """A line for each method with `sweep_words` of each quantity."""
     swept = tuple(swept)
     keys = dict.fromkeys((s.scene, s.engine, s.variant) for s in swept)
     columns = [by_method(swept, name) for name in quantities]
@@ -190,7 +186,6 @@ SUMMARY_HEADER = ("method", "angle error [rad]", "at step", "CPU [ms/s]", "order
 
 
 def summary_rows(rows: Iterable[Measurement]) -> list[list[str]]:
-    """The lines of a table with SUMMARY_HEADER, for the methods in one scene."""
     rows = list(rows)
     verdicts = by_method(sweeps(rows), "angle")
     out = []

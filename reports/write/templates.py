@@ -43,7 +43,6 @@ def without_dead_links(text: str, exists: Callable[[str], bool]) -> str:
 
 
 def marks(name: str) -> tuple[str, str]:
-    """The comments that mark the beginning and the end of a part of a document."""
     return f"<!-- {name}: written by `crosscheck report` -->", f"<!-- end of {name} -->"
 
 

@@ -47,7 +47,6 @@ class MissingAsNaN(dict[Any, Any]):
 
 
 def marked(value: Any) -> Any:
-    """The value, or UNKNOWN_MARK if it is None or NaN."""
     return UNKNOWN_MARK if value is None or value != value else value
 
 

@@ -33,8 +33,6 @@ class Unprintable(Exception):
 
 
 class Unreadable:
-    """A value that can be pickled but not unpickled."""
-
     def __reduce__(self) -> tuple[object, ...]:
         return NeedsTwo, (1,)
 
@@ -56,7 +54,6 @@ class RoughToy(Toy):
         return first
 
     def hold(self, then: str) -> None:
-        """Hold a lock on a file until the process ends."""
         import fcntl
 
         file = os.open(Path(self.folder) / then, os.O_CREAT | os.O_WRONLY)
@@ -102,7 +99,6 @@ DAMAGE: list[str] = []
 
 
 def act(name: str) -> object:
-    """Do one of the actions and return its result."""
     match name:
         case "process":
             return os.getpid()

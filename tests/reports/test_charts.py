@@ -167,7 +167,6 @@ def test_families_have_different_looks_and_the_looks_of_registered_families_are_
 
 
 def has(panel: Axes, wanted: Any) -> bool:
-    """Whether a line of the panel has exactly these points."""
     lines = [np.asarray(line.get_xydata(), dtype=float) for line in panel.get_lines()]
     return any(line.shape == np.shape(wanted) and np.allclose(line, wanted, equal_nan=True) for line in lines)
 

@@ -24,7 +24,6 @@ INSIDE = f"{PENDULUM}\ndef main():\n    world = make()\n    for _ in range(30):\
 
 
 def checked(folder, word, **terms) -> CheckReport:
-    """The report of a check over 0.5 s of motion."""
     check = run_check(CheckRequest(word, str(folder), 0.5, **terms))
     assert isinstance(check, CheckReport), check
     return check

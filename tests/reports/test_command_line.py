@@ -88,7 +88,6 @@ def test_commands_that_only_read_create_no_store(words, here, capfd):
 
 
 def one_stored(folder):
-    """Write a store with the row of ONE_CELL."""
     with Store(folder / "crosscheck-results" / "cells.sqlite") as store:
         store.put(blank(Cell(FreeFourBar(), Lagrange("euler", "baumgarte"), 1), Outcome.FINISHED))
 

@@ -71,12 +71,10 @@ def times(factor, step, name, row):
 
 
 def falls(name, row):
-    """The row with an error equal to its step."""
     return replace(row, **{name: row.step})
 
 
 def changes(names):
-    """Yield functions that change the rows of one method."""
     yield lambda rows: rows[:1]
     for name in names:
         yield partial(map, partial(falls, name))

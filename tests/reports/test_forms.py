@@ -53,8 +53,6 @@ def test_a_document_has_the_error_message_and_two_forms_at_once_are_refused(caps
 
 
 class Slow(Lagrange):
-    """An engine with the declared cost of 1 s per step."""
-
     name = "slow"
 
     def step_cost(self, mechanism) -> float:

@@ -26,8 +26,6 @@ from tests.wrong.adapters import SMALL_MISTAKES, Wrong
 
 @dataclass(frozen=True)
 class Absent(Toy):
-    """An engine whose package is not installed."""
-
     @property
     def missing(self) -> str:
         return "needs what pip install brings"

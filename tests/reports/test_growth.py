@@ -55,8 +55,6 @@ def test_an_exponent_is_fitted_to_the_largest_sizes():
 
 @dataclass(frozen=True)
 class ToyChain(Disc):
-    """A scene of the toy engine with a number of links."""
-
     links: int = 1
 
 
@@ -84,8 +82,6 @@ def test_each_point_of_a_series_has_the_numbers_of_its_cell():
 
 
 class ToyClock:
-    """A clock that replaces the process time."""
-
     def __init__(self, monkeypatch):
         self.now = 0.0
         monkeypatch.setattr(measuring.time, "process_time", lambda: self.now)
@@ -145,8 +141,6 @@ def test_a_step_must_divide_the_sampling_to_ten_digits():
 
 @dataclass(frozen=True)
 class Costly(Toy):
-    """An engine with the declared cost `cost` of a step [s]."""
-
     cost: float = 3e-3
 
     def step_cost(self, mechanism):

@@ -175,8 +175,6 @@ INSTANTS = np.linspace(0, 0.2, 21)
 
 @dataclass(frozen=True, eq=False)  # arrays can't be compared or hashed
 class Given(Plain):
-    """An engine that returns the motion `trajectory`."""
-
     trajectory: Trajectory
     variant: str = "given"
     name: str = "toy"
@@ -196,7 +194,6 @@ class GivenRun:
 
 
 def disc(**changes) -> Trajectory:
-    """The exact motion of the disc with some fields replaced."""
     return replace(DISC.motion(INSTANTS), **changes)
 
 

@@ -92,7 +92,6 @@ def test_a_drive_that_falls_behind_is_torn():
 
 
 def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) -> str:
-    """The outcome of a row with these fields."""
     quiet = {"gap": 0.0, "drive_gap": 0.0, "flips": 0, "angle": 0.0, "angle_duration": 0.0}
     values = row(**{**quiet, **fields_of_a_row})
     count = len(trajectory.t) if count is None else count

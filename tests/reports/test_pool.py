@@ -145,7 +145,6 @@ class Killer:
         monkeypatch.setattr(supervisor, "Pool", lambda *terms: self._pools.append(create(*terms)) or self._pools[-1])
 
     def arm(self) -> None:
-        """Schedule a kill within 0.1 s."""
         if len(self._timers) < self._planned:
             way = self._random.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGSEGV, None])
             timer = threading.Timer(self._random.uniform(0.0, 0.1), self._kill, (way, self._random.random()))

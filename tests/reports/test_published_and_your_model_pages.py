@@ -96,7 +96,6 @@ def test_the_page_has_a_line_for_each_method_that_was_run(answers):
 
 @pytest.fixture(scope="module")
 def checks():
-    """The checks of the page, with shorter motions."""
     return {walk: answered(replace(walk, duration=0.3)) for walk in MODEL_CHECKS}
 
 

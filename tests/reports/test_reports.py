@@ -118,8 +118,6 @@ README = "\n".join(marks("loop"))
 
 
 class OtherDisc(Disc):
-    """Another scene."""
-
     name: ClassVar[str] = "other_disc"
 
 

@@ -46,7 +46,6 @@ def test_the_numbers_of_two_processors_agree_with_either_as_the_baseline():
 
 @pytest.fixture
 def before(tmp_path: Path) -> dict[str, str]:
-    """The published row, as texts."""
     (tmp_path / "errors.csv").write_text(csv_files.as_csv([ROW], timings=False))
     (tmp_path / "timings.csv").write_text(csv_files.as_csv([ROW], timings=True, header=f"a date\n{machine()}"))
     published = csv_files.read_published(tmp_path)

@@ -37,7 +37,6 @@ def hostile(tmp_path):
 
 
 def ended(folder, *words):
-    """Run Python in this folder and return the ended process."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     return subprocess.run([sys.executable, *words], cwd=folder, env=environment, capture_output=True, text=True)
 
@@ -68,8 +67,6 @@ def test_a_worker_reports_another_package_with_a_name_of_ours(tmp_path):
 
 @dataclass(frozen=True)
 class Importing(Toy):
-    """An engine whose module does not exist."""
-
     def build(self, mechanism: Mechanism, dt: float):
         from nowhere import nothing  # pyright: ignore[reportMissingImports]
 

@@ -153,7 +153,6 @@ runpy.run_path(sys.argv[1], run_name="__main__")
 
 
 def differences(text: str, folder: Path) -> list[float]:
-    """Run a script and return the differences that it prints."""
     path = folder / "finding.py"
     path.write_text(text, encoding="utf-8")
     run = subprocess.run([sys.executable, "-c", ALONE, path], capture_output=True, text=True, check=False, cwd=folder)

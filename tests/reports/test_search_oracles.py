@@ -55,7 +55,6 @@ def results(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "inst
 
 
 def faults(engine: Any, kinds: tuple[str, ...], cases: int, oracle: str = "instant") -> set[str]:
-    """The checks that fail in any of these cases."""
     return {check for result in results(engine, kinds, cases, oracle) for check in result.faults}
 
 

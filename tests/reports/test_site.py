@@ -41,8 +41,6 @@ CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 
 
 class LinksOfPage(HTMLParser):
-    """The addresses and the anchors of a page."""
-
     def __init__(self, text: str) -> None:
         super().__init__()
         self.links: list[str] = []
@@ -62,7 +60,6 @@ def require_packages():
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory):
-    """The published pages without motions of engines."""
     cache = tmp_path_factory.mktemp("cache")
     options = {"answers": {}, "cache": cache, "foot": "Made by a test.", "contributing": CONTRIBUTING, "api": False}
     return SiteSource(**texts_of(RESULTS), **options)

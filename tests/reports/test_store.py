@@ -79,7 +79,6 @@ def test_reading_writes_no_file_and_includes_the_rows_of_a_run_in_progress(tmp_p
 
 
 def rewritten(path, text):
-    """Replace the stored text of the first cell."""
     with closing(sqlite3.connect(path)) as connection, connection:
         value = "cast(? as text)" if isinstance(text, bytes) else "?"  # the bytes are not valid text
         connection.execute(f"update results set row = {value} where key = ?", (text, CELLS[0].key))

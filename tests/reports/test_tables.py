@@ -67,8 +67,6 @@ class WithoutPin(Toy):
 
 
 class OtherDisc(Disc):
-    """Another scene."""
-
     name = "other_disc"
 
 
@@ -128,7 +126,6 @@ def cell_of(rows: Iterable[Measurement]) -> str:
 
 
 def printed() -> Iterator[str]:
-    """All tables, each below a heading."""
     yield "## On a terminal"
     yield "\n".join(
         tables.text_table(["case", "error"], [["四節", "1e-3"], ["θ", "12"]], 1, (" ┃ ", " │ "), ("━", "━╇━"))

@@ -31,8 +31,6 @@ from tests.toys import Disc, FailingToy, Toy, in_process
 
 @dataclass(frozen=True)
 class Sum(Task):
-    """A task that runs no engine."""
-
     numbers: tuple[float, ...]
     cost: float = 0.01  # type: ignore[misc]  # a property in the base
 

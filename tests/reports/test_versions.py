@@ -186,7 +186,6 @@ def toy(folder: Path, version: str, source: str) -> Path:
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """The current folder, which contains an adapter and a scene."""
     (tmp_path / "adapter.py").write_text(ADAPTER)
     (tmp_path / "scene.py").write_text("from tests.toys import Disc\nDISC = Disc()\n")
     monkeypatch.chdir(tmp_path)
@@ -330,7 +329,6 @@ def test_invalid_arguments_are_refused_in_one_line(words, reason, here, monkeypa
 
 
 def wheel(folder: Path, version: str, error: float) -> Path:
-    """Write a wheel of the toy engine."""
     built = toy(folder / "built", version, f"def error(): return {error}\n")
     info = built / f"toyengine-{version}.dist-info"
     (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: by hand\nRoot-Is-Purelib: true\nTag: py3-none-any\n")

@@ -148,7 +148,6 @@ def limit(scene: Scene) -> float:
 
 
 def whole(engines: Mapping[Engine, float]) -> list[MistakeTrial]:
-    """Every mistake in every scene."""
     return [
         MistakeTrial(
             short(scene),

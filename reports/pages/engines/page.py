@@ -45,8 +45,6 @@ Array = NDArray[np.float64]
 
 
 class BuildingTask(MethodTask):
-    """A task that mainly builds models."""
-
     @property
     def cost(self) -> float:
         return 0.1 + self.method.build_time

@@ -316,7 +316,6 @@ def engine_rows() -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Values of the formulas, and rulings from the engines' stored motions."""
     decided, failed = rulings(material.answers.items())
     slips = [
         {

@@ -35,7 +35,6 @@ RESULT = re.compile(r"expected (\S+), found (\S+)$")  # the end of a script's ou
 
 @cache
 def scripts() -> Mapping[str, str]:
-    """The scripts' texts by name."""
     return {
         name: text
         for path in sorted(UPSTREAM.iterdir())

@@ -63,8 +63,6 @@ DRIFTS = tuple(PrintedRates(revolutions, tolerance) for revolutions in (1, 100) 
 
 
 def rates_drift(material: Material) -> list[Observation]:
-    """The errors of the chapter's integration over 1 and 100 revolutions at several tolerances."""
-
     def read(answer: Answer) -> str:
         error, count, stopped = number(answer.number("error")), answer.number("evaluations"), answer.values["stopped"]
         return rf"$\beta$ has an error of {error} rad after {count:.0f} evaluations{f', {stopped}' if stopped else ''}"
@@ -75,7 +73,6 @@ def rates_drift(material: Material) -> list[Observation]:
 
 
 def refusal(material: Material) -> list[Observation]:
-    """The reference's error message for a crank that is driven beyond its limit position."""
     scene = OverdrivenFourBar()
     return refusals({f"{scene.duration:.3g} s": lambda: scene.motion([scene.duration])})
 

@@ -45,7 +45,6 @@ DIVERGENCE = NeighbourGrowth(BEYOND, (1.0, LinkPendulum().horizon, 6.0, 9.0, BEY
 
 
 def divergence(material: Material) -> list[Observation]:
-    """The growth of a difference at t = 0 in the double pendulum."""
     method = "the reference, by neighbouring starts"
     answer = material.answers.get(DIVERGENCE)
     if answer is None or not answer.finished:

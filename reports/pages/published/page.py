@@ -116,7 +116,6 @@ def largest_step(answer: Answer, name: str) -> float | None:
 
 
 def bounds(material: Material) -> list[dict[str, Any]]:
-    """The largest steps that meet the bounds, by method."""
     return [
         {"method": method_name(task.method), "steps": {name: largest_step(answer, name) for name in NEWTON_BOUNDS}}
         for task in NEWTONS

@@ -60,8 +60,6 @@ def position_errors(cell: Cell, run: Trajectory) -> tuple[float, float]:
 
 
 def beyond_friction(material: Material) -> list[Observation]:
-    """Position errors before and after the instant at which ideal rolling ends."""
-
     def describe(cell: Cell, run: Trajectory) -> str:
         earlier, last = position_errors(cell, run)
         until = cell.scene.comparable_until

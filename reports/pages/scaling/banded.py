@@ -19,8 +19,6 @@ from reference.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class BandedChain(Engine):
-    """An engine for pendulums of uniform bars."""
-
     name = "reference"
     variant = "banded rk4"
     packages = ("numpy",)

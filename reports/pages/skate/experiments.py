@@ -26,7 +26,6 @@ _KNOWN = {method_name(engine): engine for engine in (*VARIANTS, *SKATE_CONSTRUCT
 
 
 def known(names: Iterable[str]) -> dict[str, Engine]:
-    """The engines with these names; names without an engine are left out."""
     return {name: _KNOWN[name] for name in names if name in _KNOWN}
 
 

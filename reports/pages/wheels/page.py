@@ -225,7 +225,6 @@ def coasting(material: Material) -> Figure:
 
 
 def _of_bodies(motion: Trajectory) -> np.ndarray:
-    """The path of each body (bodies, times, 2) [m]."""
     return motion.pose[:, :, :2].swapaxes(0, 1)
 
 

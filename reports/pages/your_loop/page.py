@@ -129,7 +129,6 @@ def before_and_after(material: Material) -> str:
 
 
 def code_before_step(engine: str) -> str:
-    """The part of the skate's program that runs before each step."""
     source = program("sleigh", f"{engine} tuned")
     return source[source.index("def aim():") : source.index("end = ")].rstrip()
 

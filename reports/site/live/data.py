@@ -146,7 +146,6 @@ def _native(answer: Answer | None, method: Mapping[str, Any]) -> list[str] | Non
 
 
 def packed(values: NDArray[np.float64]) -> str:
-    """Return the values as little-endian doubles in base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
 
 
