@@ -15,6 +15,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -35,6 +36,23 @@ def is_cold(adaptive: bool) -> bool:
     """Whether the next run with adaptive or fixed steps has to be compiled first, which may take two minutes."""
     index = "*adaptive_steps*.nbi" if adaptive else "*fixed_steps*.nbi"
     return installed() and not any(_cache_folder().rglob(index))
+
+
+def numpy_seconds() -> float:
+    """The CPU time [s] that motions have taken in numpy because the machine code was missing."""
+    try:
+        return float(sum(map(float, _numpy_record().read_text(encoding="ascii").split())))
+    except (OSError, ValueError):
+        return 0.0
+
+
+def add_numpy_seconds(seconds: float) -> None:
+    with suppress(OSError), _numpy_record().open("a", encoding="ascii") as record:
+        record.write(f"{seconds:.3f}\n")
+
+
+def _numpy_record() -> Path:
+    return _cache_folder() / "numpy-seconds.txt"
 
 
 class CompiledFunctions(NamedTuple):

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from engines import Unsupported
-from engines.lagrange.loading import is_cold
 from engines.loading import Kind, registered_by_key
 from engines.reading import AS_IT_IS, Reader, Reading, ReadingTerms
 from reference.checks import InvalidMechanism
 from reference.trajectory import Trajectory
 from reports.check.facts import Facts, compute_facts
+from reports.check.first_use import ideal_motion
 from reports.check.judging import (
     SOFT_TOLERANCE,
     Errors,
@@ -25,7 +25,6 @@ from reports.check.judging import (
     find_opening,
     measure_errors,
     pose_distance,
-    reference_motion,
     refuse_disagreement,
     soft_motion,
 )
@@ -42,7 +41,6 @@ from reports.run.files import is_stream
 from reports.write.tables import number
 
 SWEEP_BUDGET = 5.0  # CPU time for all settings together [s].
-COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
 SEARCH_BUDGET = 60.0  # CPU time for the search of settings that meet the user's tolerance [s].
 READER_MEMBERS = ("words", "elements", "reads", "read")  # Every reader must have these members.
 NAMES_LISTED = 6  # Largest number of elements that a sentence names.
@@ -229,9 +227,7 @@ def check(
         raise InvalidMechanism(
             f"--duration is {duration:g} s; the model's own step is {model.dt:g} s; give a longer one"
         )
-    compiling = f"{COMPILING_NOTE}, before the ideal motion is followed" if is_cold(adaptive=True) else ""
-    on_progress(compiling or "following the ideal motion")
-    judge = reference_motion(mechanism, samples, every * model.dt, tolerance)
+    judge = ideal_motion(mechanism, samples, every * model.dt, tolerance, on_progress)
     truth = judge.trajectory
     samples = len(truth.t) - 1
     for met in model.obstacles(*resample(truth, min(every, OBSTACLE_CHECKS))):

@@ -14,7 +14,8 @@ from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory, ground_points
 from reports.check import rendering
 from reports.check.checked import COMPARED_SAMPLES
-from reports.check.judging import ERROR_UNITS, Errors, IdealMotion, measure_errors, reference_motion
+from reports.check.first_use import ideal_motion
+from reports.check.judging import ERROR_UNITS, Errors, IdealMotion, measure_errors
 from reports.check.pictures import draw_ideal, draw_plane, picture_data, pose_lines, render_pictures
 from reports.check.rendering import Section
 from reports.check.telling import number
@@ -90,7 +91,7 @@ def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, du
         raise ValueError(sentence)
     every = max(1, round(duration / COMPARED_SAMPLES / dt))
     samples = max(1, round(duration / (every * dt)))
-    judge = reference_motion(mechanism, samples, every * dt)
+    judge = ideal_motion(mechanism, samples, every * dt)
     run = chosen.build(mechanism, dt)(samples, every)
     return Comparison(mechanism, chosen, dt, judge, run, measure_errors(mechanism, judge.trajectory, run))
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from engines import Unsupported
-from engines.lagrange import TRUTH, Lagrange
+from engines.lagrange import TRUTH, Judge, Lagrange
 from engines.lagrange.dynamics import Dynamics, constrained_acceleration
 from engines.reading import Reading, RowRegularisation, left_out
 from reference.checks import InvalidMechanism
@@ -109,17 +109,23 @@ class IdealMotion:
         return float(self.trajectory.t[last]) / tens if tens > 0 else float("inf")
 
 
-def reference_motion(mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf) -> IdealMotion:
+def reference_motion(
+    mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf, judge: Judge = TRUTH
+) -> IdealMotion:
     """The motion with ideal joints. It ends when the estimated error exceeds the share JUDGE_SHARE of the tolerance.
 
     Raises InvalidMechanism if the integration fails, or if the first sample after the start is inaccurate.
     """
 
+    single_run = Lagrange(tolerance=judge.tolerance, compiled=judge.compiled)
+
     def by_multipliers(other: Mechanism) -> Trajectory:
-        return TRUTH.build(other, spacing)(samples, 1)
+        """The judge's motion, without its error estimate if one run is enough."""
+        motion = single_run.build(other, spacing)(samples, 1)
+        return motion if np.isfinite(motion.pose).all() else judge.build(other, spacing)(samples, 1)
 
     run: Callable[[Mechanism], Trajectory] = by_multipliers
-    motion, looser = run(mechanism), None
+    motion, looser = judge.build(mechanism, spacing)(samples, 1), None
     accurate = _is_accurate(mechanism, motion, tolerance)
     if not accurate.all() and has_one_freedom(mechanism):
         along, beside = (
@@ -142,8 +148,8 @@ def reference_motion(mechanism: Mechanism, samples: int, spacing: float, toleran
                 f"the judge does not know the ideal motion to a tenth of the tolerance {tolerance:g} beyond "
                 f"{motion.t[max(last, 0)]:.4g} s: the joints are near a singular position; give a larger --tolerance"
             )
-        return replace(reference_motion(mechanism, last, spacing), cut=True)
-    looser = looser or LOOSER_JUDGE.build(mechanism, spacing)(samples, 1)
+        return replace(reference_motion(mechanism, last, spacing, judge=judge), cut=True)
+    looser = looser or replace(LOOSER_JUDGE, compiled=judge.compiled).build(mechanism, spacing)(samples, 1)
     growths = [_growth(mechanism, motion, looser, run, *disturbance) for disturbance in DISTURBANCES]
     expected = EXPONENTIAL_GROWTH * (1 + motion.t / mechanism.time_scale)
     begins = [
