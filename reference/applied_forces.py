@@ -18,7 +18,7 @@ class ForceGroup:
     """Force elements of one class, which are evaluated together.
 
     element: an object of the class whose numeric fields are arrays with the elements along the first axis. first,
-    second (elements,): indices of the bodies; the ground's index follows the last body's.
+    second (elements,): indices of the bodies; the ground has the index after the last body.
     """
 
     element: Any

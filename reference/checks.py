@@ -1,8 +1,8 @@
 """Runtime validation of fields and arguments from their annotations.
 
-The fields of a frozen dataclass that inherits from `Valid` are checked when it is made, the arguments of a function
-with `validated` when it is called. Both raise InvalidMechanism, a ValueError, with a sentence that states which value
-is wrong, why, and which values are valid. Numpy's numbers become Python's; lists and arrays become tuples or arrays of
+A frozen dataclass that inherits from `Valid` checks its fields when it is made. A function with `validated` checks its
+arguments when it is called. Both raise InvalidMechanism, a ValueError, with a sentence that states which value is
+wrong, why, and which values are valid. Numpy's numbers become Python's; lists and arrays become tuples or arrays of
 floats, as declared. So equal settings have equal reprs. Relations between values (lengths that assemble) are checked by
 the class itself. `reference.validators` has the validators.
 """
@@ -35,7 +35,7 @@ Count = Annotated[int, from_to(1, LARGEST_COUNT)]
 Sign = Annotated[int, Rule(lambda value: value in (1, -1), "that is 1 or -1")]
 Signs = Annotated[ArrayLike, Rule(lambda value: np.all(np.abs(value) == 1), "each 1 or -1")]
 Name = Annotated[str, Rule(lambda value: value.strip() and value.isprintable(), "that is not empty and can be printed")]
-Numbers = Annotated[Floats, NOT_FINITE]  # NaN for unknown values.
+Numbers = Annotated[Floats, NOT_FINITE]  # Unknown values are NaN.
 Complexes = Annotated[Any, COMPLEX]  # Array arguments of functions that are differentiated by a complex step.
 AnyComplexes = Annotated[Complexes, NOT_FINITE]
 Times = Annotated[
@@ -53,7 +53,7 @@ class NotFinite(InvalidMechanism, ArithmeticError):
 
 
 def short_repr(value: Any) -> str:
-    """A value in one short line."""
+    """The repr of a value in one short line."""
     try:
         text = " ".join(repr(value).split())
     except Exception:  # an int has too many digits, or the object can't be printed
@@ -77,8 +77,8 @@ def _validators_of_fields(cls: type) -> dict[str, Validator]:
 class Valid:
     """The base of a frozen dataclass whose fields are checked.
 
-    A class with a `__post_init__` of its own begins it with `super().__post_init__()`. An array becomes a read-only
-    copy, since results that are computed from it are cached.
+    A `__post_init__` in a subclass begins with `super().__post_init__()`. An array becomes a read-only copy, since
+    results that are computed from it are cached.
     """
 
     _copies: ClassVar[bool] = True

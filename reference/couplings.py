@@ -1,7 +1,7 @@
 """Linear relations between relative coordinates of any number of bodies: mimic joints, rack and pinion, tendons.
 
-A `Term` is a factor times one relative coordinate of two bodies. The row of a sum of terms is the sum of their rows. A
-`Coupling` keeps such a sum constant; `forces.CoupledForce` acts along such a sum.
+A `Term` is a factor times one relative coordinate of two bodies. The row of a sum of terms is the sum of the terms'
+rows. A `Coupling` keeps such a sum constant, and a `forces.CoupledForce` acts along such a sum.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ AnyArray = NDArray[Any]
 class Term(Valid):
     """`factor` times a relative coordinate of two bodies.
 
-    The coordinate is the second body's angle less the first's [rad], not wrapped. If `sliding`, it is the position of
-    the point `second_point` of the second body along a line in the first [m], which passes through `first_point` at
-    `line_angle` [rad]. Points [m] are in the bodies' own frames, from the centre of mass; on the ground (None) they are
-    world coordinates.
+    The coordinate is the second body's angle minus the first body's angle [rad], not wrapped. If `sliding`, it is the
+    position [m] of `second_point` of the second body along a line in the first body. The line passes through
+    `first_point` at `line_angle` [rad]. Points [m] are in the bodies' own frames, from the centre of mass; on the
+    ground (None) they are world coordinates.
     """
 
     holonomic: ClassVar[bool] = True
@@ -40,7 +40,7 @@ class Term(Valid):
     second_point: tuple[float, float] = (0.0, 0.0)
 
     def value(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """The factor times the coordinate (...) at poses (..., 3)."""
+        """The value (...) of the term at poses (..., 3) of the two bodies."""
         if not self.sliding:
             return self.factor * (second[..., 2] - first[..., 2])
         line = first[..., 2] + self.line_angle

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Self
 from reference.checks import Name, Valid
 
 Vector = tuple[float, float]
-Pair = tuple[str | None, str | None]  # Names of two bodies, None for the ground.
+Pair = tuple[str | None, str | None]  # The names of two bodies, with None for the ground.
 Place = tuple[str | None, Vector]  # The name of a body, None for the ground, and a point in its frame [m].
 UnitExponents = Mapping[str, tuple[int, int]]
 
@@ -21,7 +21,7 @@ UnitExponents = Mapping[str, tuple[int, int]]
 class Element(Valid):
     """Base of joints and force elements.
 
-    `stackable`: several elements of the class can be evaluated as one, with arrays in its numeric fields.
+    `stackable`: several elements of the class can be evaluated as one element with arrays in the numeric fields.
     `acts_along_line`: the element acts along the line between its two points.
     `unit_exponents`: field names to the exponents of mass and time in the field's unit, which are 0 if absent.
     """
@@ -37,7 +37,7 @@ class Element(Valid):
 
     @property
     def points(self) -> tuple[Place, ...]:
-        """The points that define the element; the first body's points precede the second's."""
+        """The points that define the element, with those of the first body first."""
         return ()
 
     @property
@@ -64,7 +64,7 @@ class JointElement(Element):
 
     @property
     def is_angular(self) -> tuple[bool, ...]:
-        """Whether each row is a rotation [rad, rad/s, N m] and not a length [m, m/s, N] (size,)."""
+        """Whether each row (size,) is a rotation [rad, rad/s, N m] and not a length [m, m/s, N]."""
         return (False,) * self.size
 
     @property
@@ -89,7 +89,7 @@ class JointElement(Element):
 
 @dataclass(frozen=True)
 class BetweenTwo(Element):
-    """An element between two bodies, or one and the ground."""
+    """An element between two bodies, or between one body and the ground."""
 
     name: Name
     first: Name | None

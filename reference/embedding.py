@@ -7,7 +7,7 @@ Fufaev)
 T^T M T nu' = T^T (f - M T' nu).
 
 T is derived by hand for each mechanism. Its rate T' is computed by a complex step along the motion, which is exact. The
-motion does not use the joints' rows, so it is an independent check of them.
+motion does not use the joints' rows, so it checks the rows independently.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class EmbeddedScene(PlacedScene):
 
     @abstractmethod
     def tangent(self, coordinates: Any) -> tuple[Any, Any]:
-        """Poses (..., bodies, 3) and T (..., 3 bodies, freedoms) at c (..., coordinates); T is analytic in c."""
+        """Poses (..., bodies, 3) and T (..., 3 bodies, freedoms) at c (..., coordinates), analytic in c."""
 
     def coordinate_rates(self, coordinates: NDArray[Any], velocities: NDArray[Any]) -> NDArray[Any]:
         """c' (..., coordinates) at c and nu."""
@@ -44,7 +44,7 @@ class EmbeddedScene(PlacedScene):
 
     @property
     def freedoms(self) -> int:
-        """The number of components of nu."""
+        """The number of quasi-velocities nu."""
         return len(self.start) // 2
 
     @property
@@ -77,7 +77,7 @@ class EmbeddedScene(PlacedScene):
         return changes, pose, twist, (tangent @ changes[..., None] + bias).reshape(pose.shape)
 
     def accelerations(self, coordinates: Array, velocities: Array) -> Array:
-        """nu' (..., freedoms) by masses and forces."""
+        """nu' (..., freedoms) from masses and forces."""
         return self.embedded(coordinates, velocities)[0]
 
     def rates(self, state: Array) -> Array:

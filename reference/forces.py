@@ -26,7 +26,7 @@ from reference.plane import apart, distance, from_body, length_of, point_rows
 AnyArray = NDArray[Any]
 Bodies = Mapping[str, Body]
 
-# Relative extension of a spring up to which it counts as a rounding error.
+# Relative extension of a spring up to which the extension counts as a rounding error.
 ROUNDED_EXTENSION = 1e-12
 
 
@@ -68,7 +68,7 @@ class _Dissipative(_ForceOfTwo):
 
 @dataclass(frozen=True)
 class Spring(_ForceOfTwo):
-    """A linear massless spring between a point of each body, with the tension stiffness (distance - rest length).
+    """A linear massless spring between a point of each body, with the tension stiffness * (distance - rest length).
 
     stiffness [N/m]; rest_length [m], which may be zero. Points [m] are in the bodies' own frames, from the centre of
     mass; points on the ground (None) are world coordinates.
@@ -86,7 +86,8 @@ class Spring(_ForceOfTwo):
         return math.sqrt(self.stiffness * _inverse_mass(places, bodies))
 
     def fallback_length(self, span: float, is_guided: bool) -> float:
-        """The rest length or, if it is zero, the span; for a spring along a slot, the extension at t = 0."""
+        """The rest length, or the span if the rest length is zero. For a spring along a slot it is the extension at t =
+        0."""
         if not is_guided:
             return self.rest_length or span
         extension = abs(span - self.rest_length)
@@ -133,7 +134,7 @@ class Damper(_Dissipative):
 
 @dataclass(frozen=True)
 class TorsionSpring(_ForceOfTwo):
-    """A linear torsion spring between two bodies: its torque is stiffness (relative angle - rest angle).
+    """A linear torsion spring between two bodies, with the torque stiffness * (relative angle - rest angle).
 
     stiffness [N m/rad]; rest_angle [rad] of the second body relative to the first. The relative angle is not wrapped.
     """
@@ -158,7 +159,7 @@ class TorsionSpring(_ForceOfTwo):
 
 @dataclass(frozen=True)
 class TorsionDamper(_Dissipative):
-    """A linear torsion damper: its torque is damping [N m s/rad] times the relative rotation rate of its bodies."""
+    """A linear torsion damper, whose torque is damping [N m s/rad] times the relative rotation rate of the bodies."""
 
     unit_exponents: ClassVar[UnitExponents] = {"damping": (1, -1)}
 
@@ -193,7 +194,7 @@ class Torque(_ForceOfTwo):
 class Force(ForceFacts):
     """A constant force (x, y) [N] in the world's directions, at a point of the second body.
 
-    second_point [m] is in the body's own frame, from its centre of mass. `first` is always the ground.
+    second_point [m] is in the body's frame, from the centre of mass. `first` is always the ground.
     """
 
     first: ClassVar[None] = None
@@ -298,7 +299,7 @@ Ends = tuple[tuple[int, int], ...]  # indices of the first and the second body o
 
 
 def _inverse_mass(places: tuple[Place, ...], bodies: Bodies) -> float:
-    """The sum over the bodies of the largest inverse effective mass [1/kg] at the point where the force acts."""
+    """The sum of the bodies' largest inverse effective masses [1/kg] at the points where the force acts."""
     ends = [(bodies[name], point) for name, point in places if name is not None]
     return sum(1 / body.mass + (x * x + y * y) / body.inertia for body, (x, y) in ends)
 

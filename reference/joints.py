@@ -1,14 +1,14 @@
 """Rigid bodies, and the joints between two bodies or between a body and the ground.
 
 A joint is defined by its gap, which is zero if the joint is satisfied, and by velocity rows J with J v = rate. `JOINTS`
-has every class; a class is added only if a scene needs it and `engines.lagrange` implements it.
+has every class. New classes must be needed by a scene and implemented in `engines.lagrange`.
 
-Besides the properties of `elements.JointElement`, a joint has `labels`, the names of its `size` rows, and two functions
-of the poses of its two bodies (..., 3); the ground has the pose zero. `gap(first, second, t)` has the shape (...,
-size). `rows(first, second)` has the shape (..., size, 6): its columns are x, y and angle of the first body, then of the
-second. Rows are analytic functions, so they can be differentiated by a complex step. The reaction of a row acts on the
-second body, and its opposite on the first. `rows.JointRows` evaluates the stackable joints of one class together, with
-arrays in their numeric fields.
+Besides the properties of `elements.JointElement`, a joint has `labels`, the names of its `size` rows. It has two
+functions of the poses (..., 3) of its two bodies, with the pose zero for the ground. `gap(first, second, t)` has the
+shape (..., size). `rows(first, second)` has the shape (..., size, 6): its columns are x, y and angle of the first body,
+then of the second. Rows are analytic functions, so they can be differentiated by a complex step. The reaction of a row
+acts on the second body, and its opposite on the first. `rows.JointRows` evaluates the stackable joints of one class
+together, with arrays in their numeric fields.
 
 Points (..., 2) [m] are in the bodies' own frames, from the centre of mass; points on the ground (None) are world
 coordinates.
@@ -35,8 +35,8 @@ Triple = tuple[float, float, float]
 Ratio = Annotated[float, Rule(lambda value: value != 0, "other than zero")]
 AnyArray = NDArray[Any]
 
-# Distance between a slot's line and a point, relative to the span of a spring, up to which the point is on the line.
-# The value is far above rounding and far below a mistake in the input.
+# A point is on a slot's line if its distance from the line is at most this fraction of a spring's span. The fraction is
+# far above rounding errors and far below mistakes in the input.
 ON_LINE = 1e-9
 
 
@@ -45,7 +45,8 @@ class Body(Valid):
     """A rigid body in the plane, described at its centre of mass.
 
     mass [kg]; inertia [kg m^2] about the centre of mass; pose (x, y, angle) [m, m, rad] and twist (vx, vy, omega)
-    [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism for a non-positive mass or inertia, or a number not finite.
+    [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism for a mass or inertia that is not positive, or a number that is
+    not finite.
     """
 
     name: Name
@@ -56,7 +57,7 @@ class Body(Valid):
 
 
 def bodies_of(names: Sequence[str], masses: Any, inertias: Any, pose: Any, twist: Any) -> tuple[Body, ...]:
-    """One body per name, from masses and inertias (bodies,), poses and twists (bodies, 3)."""
+    """Bodies with these names, masses and inertias (bodies,), poses and twists (bodies, 3)."""
     numbers = (np.asarray(values, dtype=float).tolist() for values in (masses, inertias, pose, twist))
     return tuple(Body(name, m, i, tuple(p), tuple(v)) for name, m, i, p, v in zip(names, *numbers, strict=True))
 
@@ -70,7 +71,8 @@ class _JointOfTwo(BetweenTwo, JointElement):
 class Pin(_JointOfTwo):
     """An ideal hinge (18.62): the point `first_point` of the first body and `second_point` of the second coincide.
 
-    Rows: velocity of the second point minus that of the first, x then y. Reaction: force on the second body [N].
+    Rows: velocity of the second point minus velocity of the first point, x then y. Reaction: force on the second body
+    [N].
     """
 
     size: ClassVar[int] = 2
@@ -128,8 +130,8 @@ class Slot(_JointOfTwo):
     """A straight slot in the first body, in which the point `second_point` of the second body slides.
 
     The line passes through `first_point` [m] of the first body at the angle `line_angle` [rad] in its frame. The second
-    body may rotate; a `Drive` of rate zero prevents its rotation. Row: velocity of the second point perpendicular to
-    the line, to the left of its direction, relative to the first body. Reaction: force perpendicular to the line on the
+    body may rotate; a `Drive` of rate zero prevents its rotation. Row: velocity of the second point relative to the
+    first body, perpendicular to the line and positive to its left. Reaction: force perpendicular to the line on the
     second body [N].
     """
 
@@ -218,12 +220,12 @@ class Rod(_JointOfTwo):
 
 @dataclass(frozen=True)
 class Gear(_JointOfTwo):
-    """A pair of gears on fixed axles, or a belt: second angle = `ratio` times first angle + `phase` [rad].
+    """A pair of gears on fixed axles, or a belt, with second angle = `ratio` * first angle + `phase` [rad].
 
-    Angles are the angles of the poses, not wrapped; the ground's (None) angle is zero. The ratio of external gears is
-    negative, the ratio of a belt or a ring gear is positive. Row: omega of the second body minus `ratio` times omega of
-    the first [rad/s]. Reaction: torque on the second body [N m]; -ratio times that torque acts on the first body. The
-    bearings carry the remaining forces, which are not in the equations.
+    The angles of the poses are used, not wrapped; the angle of the ground (None) is zero. External gears have a
+    negative ratio; belts and ring gears have a positive ratio. Row: omega of the second body minus `ratio` times omega
+    of the first [rad/s]. Reaction: torque on the second body [N m]; -ratio times that torque acts on the first body.
+    The bearings carry the remaining forces, which are not in the equations.
     """
 
     labels: ClassVar[tuple[str, ...]] = ("torque",)
@@ -250,8 +252,8 @@ class Weld(_JointOfTwo):
     """A rigid connection at two points, with the angle `angle` [rad] of the second body relative to the first.
 
     The relative angle is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus
-    that of the first, x then y, and omega of the second body minus omega of the first. Reaction: force [N] at the point
-    and torque [N m] on the second body.
+    velocity of the first point, x then y, and omega of the second body minus omega of the first body. Reaction: force
+    [N] at the point and torque [N m] on the second body.
     """
 
     size: ClassVar[int] = 3

@@ -103,7 +103,7 @@ class Mechanism(Valid):
 
     @cached_readonly
     def is_angular(self) -> NDArray[np.bool_]:
-        """Which rows are rotations [rad, rad/s, N m] and not lengths [m, m/s, N] (rows,)."""
+        """Mask (rows,) of the rows that are rotations [rad, rad/s, N m] and not lengths [m, m/s, N]."""
         return np.array([is_angular for joint in self.joints for is_angular in joint.is_angular], dtype=bool)
 
     @cached_property
@@ -143,7 +143,8 @@ class Mechanism(Valid):
     def potential(self, pose: States) -> NDArray[Any]:
         """Potential energy (...) [J] of gravity, springs, constant forces and torques at poses (..., bodies, 3).
 
-        It is zero for bodies at the world's origin, springs at rest, and equal angles of bodies with a torque.
+        It is zero if bodies are at the world's origin, springs have their rest length, and bodies with a torque have
+        equal angles.
         """
         of_gravity = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
         return of_gravity + self.applied.potential(pose) if self.forces else of_gravity
@@ -155,7 +156,7 @@ class Mechanism(Valid):
 
     @cached_readonly
     def holonomic(self) -> NDArray[np.bool_]:
-        """Which rows are derivatives of a position (rows,)."""
+        """Mask (rows,) of the rows that are derivatives of a position."""
         return np.array([joint.holonomic for joint in self.joints for _ in range(joint.size)], dtype=bool)
 
     def require_room(self, samples: int) -> None:
@@ -274,10 +275,10 @@ class Mechanism(Valid):
 
 
 Array = NDArray[np.float64]
-# Allowed violation of a row at the start, relative to the mechanism's length or speed. The value is far above rounding
-# and far below a mistake in the input.
+# Allowed violation of a row at the start, relative to the mechanism's length or speed. This tolerance is far above
+# rounding errors and far below mistakes in the input.
 START_TOLERANCE = 1e-9
-# Rounding of a coordinate, in units of its last digit, when a body and its joints are placed.
+# Rounding error of a coordinate of a placed body or joint, in units of the coordinate's last digit.
 PLACEMENT_ROUNDINGS = 64
 
 

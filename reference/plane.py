@@ -1,8 +1,8 @@
-"""Vectors of the plane: rotation, k x vector, the velocity and acceleration of a point of a rotating body, and the
-vector from a point of one body to a point of another, with its derivatives by their poses (..., 3).
+"""Functions of plane vectors: rotation, k x vector, velocity and acceleration on a rotating body, and the vector
+between points of two bodies with its derivatives by the poses (..., 3).
 
-Vectors are arrays (..., 2) and broadcast against angles and rates (...). k points out of the plane, angles are
-counter-clockwise. All functions are analytic, so they can be differentiated by a complex step.
+Vectors are arrays (..., 2) and broadcast against angles and rates (...). The unit vector k points out of the plane, and
+angles are counter-clockwise. All functions are analytic, so they can be differentiated by a complex step.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 AnyArray = NDArray[Any]
 
-# Imaginary step of an analytic function: its square is below the smallest double, so the derivative is exact.
+# Imaginary step of complex-step derivatives. The square of the step is below the smallest double, so the derivative is
+# exact.
 COMPLEX_STEP = 1e-100
 
 
@@ -25,18 +26,18 @@ def components(angle: Any, x: Any, y: Any) -> tuple[Any, Any]:
 
 
 def from_body(angle: Any, point: Any) -> tuple[Any, Any]:
-    """World components (...) of a body's own vector `point` (..., 2) at the body's angle (...) [rad]."""
+    """World components (...) of the vector `point` (..., 2) in a body's frame at the body's angle (...) [rad]."""
     vector = np.asarray(point)
     return components(angle, vector[..., 0], vector[..., 1])
 
 
 def rotated(angle: Any, vector: AnyArray) -> AnyArray:
-    """The vector (..., 2) rotated by `angle` (...) [rad]: a body's own vector in the world."""
+    """The vector (..., 2) rotated by `angle` (...) [rad], such as a body's vector in the world."""
     return np.stack(components(angle, vector[..., 0], vector[..., 1]), axis=-1)
 
 
 def perpendicular(vector: AnyArray) -> AnyArray:
-    """k x vector (..., 2): a quarter turn counter-clockwise."""
+    """k x vector (..., 2), which is the vector rotated by a quarter turn counter-clockwise."""
     return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
 
 
@@ -77,12 +78,12 @@ def point_rows(first: AnyArray, second: AnyArray, first_point: Any, second_point
 
 
 def length_of(vector: AnyArray) -> AnyArray:
-    """The length (...) of a vector (..., 2), without an absolute value, so that it is analytic."""
+    """The length (...) of a vector (..., 2) as an analytic function."""
     return np.sqrt(vector[..., 0] ** 2 + vector[..., 1] ** 2)
 
 
 def distance(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> tuple[AnyArray, AnyArray]:
-    """The distance (...) [m] of the two points and its derivative (..., 6); NaN where they coincide."""
+    """The distance (...) [m] of two points and its derivative (..., 6), or NaN if the points coincide."""
     points = first_point, second_point
     vector, rows = apart(first, second, *points), point_rows(first, second, *points)
     length = length_of(vector)
@@ -92,8 +93,8 @@ def distance(first: AnyArray, second: AnyArray, first_point: Any, second_point: 
 
 
 def direction_row(first: AnyArray, second: AnyArray, second_point: Any, x: Any, y: Any) -> AnyArray:
-    """The row (..., 1, 6) of the velocity of a point of the second body along (x, y) (...), relative to the first
-    body's material there: columns are the first body's x, y, angle and then the second's.
+    """The row (..., 1, 6) of the velocity along (x, y) (...) of a point of the second body, relative to the first
+    body's material at the same place. Columns are x, y, angle of the first body and then of the second body.
     """
     point_x, point_y = from_body(second[..., 2], second_point)
     arm_x, arm_y = second[..., 0] + point_x - first[..., 0], second[..., 1] + point_y - first[..., 1]

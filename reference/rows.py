@@ -1,8 +1,8 @@
 """Evaluation and rank of a mechanism's velocity rows J, and the reactions along the rows.
 
-The size of a row depends on the unit of length, so ranks are computed for rows without units. The condition number of J
-M^-1 J^T is the square of that of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without that
-product. For many rows the product is used, since it has a narrow band; one step of refinement follows.
+The magnitude of a row depends on the unit of length, so ranks are computed for rows without units. The condition number
+of J M^-1 J^T is the square of that of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without
+that product. For many rows the product is used, since it has a narrow band; one step of refinement follows.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
     unit of each row. The result is NaN if a number is not finite.
 
     The columns of M^(-1/2) rows^T are scaled to equal length, so that rows of light and heavy bodies have the same
-    weight. The dependence of rows is decided by their `rank`, with angles counted as arcs of `length` [m], since a
-    large ratio of masses can make independent rows look dependent.
+    weight. Whether rows are dependent is decided by `rank` without the masses, since a large ratio of masses can make
+    independent rows look dependent. Angles are counted as arcs of `length` [m].
     """
     root = np.sqrt(inertias)
     matrix = np.swapaxes(rows / root, -1, -2)
@@ -163,7 +163,7 @@ class JointRows:
     @classmethod
     def of(cls, joints: Sequence[Joint], index: Mapping[str | None, int]) -> JointRows:
         """From joints; `index` maps names of bodies to their indices, and None, the ground, to the last index."""
-        by_class: dict[Any, list[tuple[Joint, range]]] = {}  # a joint that is not stackable has an entry of its own
+        by_class: dict[Any, list[tuple[Joint, range]]] = {}  # joints that are not stackable have separate entries
         start, terms = 0, list[JointGroup]()
         for joint in joints:
             if isinstance(joint, Coupling):
@@ -234,11 +234,11 @@ class JointRows:
 
 
 def stacked(joints: Sequence[Any]) -> Any:
-    """Several joints or force elements of one class as one object, whose numeric fields are arrays."""
+    """One object for several joints or force elements of one class, with arrays as numeric fields."""
     if not joints[0].stackable:
         return joints[0]
     numeric = [f.name for f in fields(joints[0]) if f.name not in ("name", "first", "second")]
-    stacked = copy(joints[0])  # without validation, since arrays are no valid fields of one joint
+    stacked = copy(joints[0])  # not validated, since fields of a joint may not be arrays
     stacked.__dict__.update({name: np.array([getattr(joint, name) for joint in joints]) for name in numeric})
     return stacked
 
@@ -279,8 +279,8 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
         factor, solution, failed = dpbsv(band, rows @ target, lower=1)
         if failed or not factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
             continue
-        # One step of iterative refinement restores the digits that are lost because the condition number of J
-        # M^-1 J^T is the square of that of M^(-1/2) J^T (Bjorck 1987, corrected seminormal equations).
+        # One step of iterative refinement restores the digits that the product J M^-1 J^T loses (Bjorck 1987, corrected
+        # seminormal equations).
         missing = rows @ (target - mobility * (rows.T @ solution))
         out[time, order] = solution + dpbtrs(factor, missing, lower=1)[0]
     return out

@@ -21,7 +21,7 @@ def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequen
 
     The points are the centre of mass, the points at which joints and forces act, and the point that defines a slot's
     line. For a force along a slot's line they are the slot's points. If the points of each body coincide, the result is
-    the largest length of a spring or radius of curvature of a rolling contact, or else 1.
+    the largest spring length or radius of curvature of a rolling contact, else 1.
     """
     by_name = {body.name: body for body in bodies}
     points: dict[str, set[Vector]] = {body.name: {(0.0, 0.0)} for body in bodies}

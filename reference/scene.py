@@ -61,8 +61,9 @@ class NoMotion(InvalidMechanism):
 class Scene(Valid, ABC):
     """Base of scenes: frozen dataclasses whose fields are the only data of an experiment.
 
-    `name` is the scene's key, `source` its place in the chapter, `duration` [s] the length of its runs. Until `horizon`
-    [s] errors grow at most about linearly, so that convergence orders can be fitted. `max_durations` limits `max_time`.
+    `name` is the scene's key, `source` is its place in the chapter, and `duration` [s] is the length of runs. Until
+    `horizon` [s] errors grow at most about linearly, so that convergence orders can be fitted. `max_durations` limits
+    `max_time`.
     """
 
     name: ClassVar[str]
@@ -87,7 +88,7 @@ class Scene(Valid, ABC):
                 validate(self._owner(), name, value, annotation)
 
     def __getstate__(self) -> dict[str, Any]:
-        """The fields, and the name if it was changed, so that pickling leaves cached results out."""
+        """The state for pickling: the fields, and the name if it was changed, without cached results."""
         names = [field.name for field in fields(self)]  # type: ignore[arg-type]
         return {name: getattr(self, name) for name in (*names, *(["name"] if "name" in vars(self) else []))}
 
@@ -96,7 +97,7 @@ class Scene(Valid, ABC):
         """The bodies and joints at t = 0."""
 
     def motion(self, t: ArrayLike) -> Trajectory:
-        """The reference motion at times t (times,) or one time [s]: poses, twists, reactions.
+        """The reference motion with poses, twists and reactions at times t (times,) or one time [s].
 
         Raises InvalidMechanism unless all times are finite, between 0 and `max_time`, and before the motion's end.
         Raises NoMotion for a motion that can't be computed or is not finite.
@@ -142,17 +143,18 @@ class Scene(Valid, ABC):
     def max_time(self) -> float:
         """The last time of `motion` [s], `max_durations` times the duration.
 
-        The error of an integrated motion grows with the time, and that of a chaotic motion grows exponentially. A
-        closed form has an error of about 1e-16 of the angle of rotation since t = 0.
+        The error of an integrated motion grows with the time, in a chaotic motion exponentially. A closed form has an
+        error of about 1e-16 of the angle of rotation since t = 0.
         """
-        return self.max_durations * self.duration * (1 + 1e-9)  # since multiples of a step may be rounded upwards
+        return self.max_durations * self.duration * (1 + 1e-9)  # multiples of a step may be rounded upwards
 
     def _owner(self) -> str:
         return f"scene {self.name!r}"
 
     @validated
     def branch_of(self, pose: Poses) -> NDArray[np.int_]:
-        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1 or -1; 0 for a scene with one branch.
+        """The branch (assembly mode) (...,) of poses (..., bodies, 3), which is +1 or -1, or 0 for scenes with one
+        branch.
 
         Raises InvalidMechanism if the number of bodies is wrong.
         """
@@ -226,8 +228,8 @@ def _raising_no_motion(mechanism: Callable[[Any], Mechanism]) -> Callable[[Any],
 def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
     """The scene with fields set by name from text, such as "0.5", "(0, -9.81)" or "True".
 
-    Returns the scene itself if no value changes. Raises InvalidMechanism for a name that is no field (with the nearest
-    one), for a value that is not valid for the field, and for numbers from which no mechanism can be made.
+    Returns the scene itself if no value changes. Raises InvalidMechanism for an unknown field, for a value that is not
+    valid for the field, and for numbers from which no mechanism can be made. The message suggests the nearest field.
     """
     names = [field.name for field in fields(scene)]  # type: ignore[arg-type]
     hints = typing.get_type_hints(type(scene), include_extras=True)
@@ -249,7 +251,7 @@ def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
         return scene
     name = _name(scene.name, {name: values[name] for name in names if name in values})
     changed = named(_replaced(scene, values), name)
-    changed.mechanism()  # raises if the values are not valid together
+    changed.mechanism()  # raises an error if the values are not valid together
     return changed
 
 

@@ -14,13 +14,13 @@ from reference.plane import rotated
 from reference.validators import NOT_FINITE, of_shape
 
 Array = NDArray[np.float64]
-# Number of times in a notebook's table.
+# Number of rows in a notebook's table of a motion.
 TABLE_ROWS = 6
 # A warning about an adapter of this suite begins with this text. Stored rows contain only the text of warnings.
 ADAPTER_PREFIX = "ours:"
 
 WarningKind = Literal[
-    "contact",  # A contact is lost, or rotates too far in a step.
+    "contact",  # A contact is lost, or a body rotates too far in a step.
     "gap",  # A joint is open.
     "known fault",  # This engine or release computes wrong motions in known cases.
     "lost",  # The motion ends by numbers that are not finite, an unsatisfied joint, or a failed solver.
@@ -29,7 +29,7 @@ WarningKind = Literal[
     "reactions",  # Reactions are unknown or have a large error.
     "residual",  # A solver left a residual.
     "start reactions",  # Only the reactions at the start have an error.
-    "stiff",  # Stability, not accuracy, determines the steps.
+    "stiff",  # The steps are limited by stability and not by accuracy.
     "unconverged",  # The solver's slowest mode does not converge within a step.
     "unresolved",  # The error may exceed the method's claim.
     "other",
@@ -39,8 +39,8 @@ WarningKind = Literal[
 class RunWarning(str):
     """A warning of a run: a text with fields for its kind, origin and time.
 
-    kind: one of WarningKind. origin: "engine" for a message of the engine, "upstream" for a fault of the engine that
-    this suite reports, "adapter" for a finding about this suite's adapter or method. time [s]: the time from which the
+    kind: one of WarningKind. origin: "engine" for messages of the engine, "upstream" for faults of the engine that this
+    suite reports, "adapter" for findings about this suite's adapter or method. time [s]: the time from which the
     warning holds, or None if unknown.
 
     A warning is a string, and two warnings with the same text are equal. Plain strings have the origin "adapter" if
@@ -133,7 +133,7 @@ class Trajectory(Valid):
 def energy(mechanism: Mechanism, trajectory: Trajectory) -> Array:
     """Kinetic energy plus `Mechanism.potential` (times,) [J].
 
-    It is constant if there is no drive and no damper.
+    The energy is constant without drives and dampers.
     """
     kinetic = 0.5 * np.sum(mechanism.inertias * trajectory.twist**2, axis=(-2, -1))
     return kinetic + mechanism.potential(trajectory.pose)
@@ -166,6 +166,6 @@ def body_points(mechanism: Mechanism, pose: Array) -> dict[str, Array]:
 
 
 def ground_points(mechanism: Mechanism) -> Array:
-    """World points (points, 2) [m] of joints that are fixed to the ground; a slot's line has no such point."""
+    """World points (points, 2) [m] of joints at the ground, without points of slots."""
     points = [point for joint in mechanism.joints for name, point in joint.fixed_points if name is None]
     return np.array(list(dict.fromkeys(points)), dtype=float).reshape(-1, 2)

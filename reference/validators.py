@@ -1,9 +1,9 @@
 """Validators check values by annotations and have words that describe valid values.
 
 `float` is a finite number and `int` an integer; a bool is neither. `ArrayLike` has numbers in any shape, and `NDArray`
-is converted to an array of floats. Literal, tuple, unions and classes have their usual meaning. `Annotated` adds a
-Rule, or allows NOT_FINITE or COMPLEX numbers. `Any` is not checked. `reference.checks` applies validators to fields and
-arguments.
+is converted to an array of floats. Literal, tuple, unions and classes have the meaning that type checkers give them.
+`Annotated` adds a Rule, or allows NOT_FINITE or COMPLEX numbers. `Any` is not checked. `reference.checks` applies
+validators to fields and arguments.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Rule:
-    """A further condition on a value, with words for messages that follow the words of the value's type."""
+    """A further condition on a value. In messages its words follow the words for the value's type."""
 
     predicate: Callable[[Any], Any]
     words: str
 
 
 def of_shape(*shape: int | str) -> Rule:
-    """Arrays with these sizes of the last axes. A name stands for any size, and a first '...' for any number of
-    axes."""
+    """The rule that the last axes of an array have these sizes. A name stands for any size, and a first '...' for any
+    number of axes."""
     sizes = shape[1:] if shape[:1] == ("...",) else shape
 
     def predicate(value: Any) -> bool:

@@ -72,7 +72,7 @@ def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """Append the names of skipped tests to the file that CROSSCHECK_SKIPPED names, for `.ci/run`."""
+    """For `.ci/run`, append the names of skipped tests to the file that CROSSCHECK_SKIPPED names."""
     target = os.environ.get("CROSSCHECK_SKIPPED")
     if target and "PYTEST_XDIST_WORKER" not in os.environ:
         with open(target, "a", encoding="utf-8") as file:

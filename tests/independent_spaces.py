@@ -1,4 +1,4 @@
-"""Motions of pymunk spaces without code of this suite: absolute coordinates, Lagrange multipliers, DOP853.
+"""Motions of pymunk spaces by absolute coordinates, Lagrange multipliers and DOP853, without code of this suite.
 
 Rows of joints are derivatives by complex steps. Parameters are read from the space.
 """

@@ -1,4 +1,4 @@
-"""Rows with a different number in each field, so that a test fails if code uses the wrong field."""
+"""Rows with different numbers in all fields, so that a test fails if code uses a wrong field."""
 
 from __future__ import annotations
 

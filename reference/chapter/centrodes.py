@@ -45,7 +45,8 @@ def instant_centre(pose: States, twist: States) -> tuple[Array, Array]:
 
 @validated
 def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array:
-    """Distance (times,) [m] between the instant centres of one body in space: an engine's velocity error as a length.
+    """Distance (times,) [m] between the instant centres in two motions of a body, which expresses a velocity error as a
+    length.
 
     Both trajectories must have the same times. NaN if either rotation rate vanishes; near such a time the distance
     grows without bound.
@@ -78,7 +79,8 @@ class Centrodes(Valid):
 
     @cached_property
     def space_curve(self) -> Traced:
-        """The fixed curve A, traversed as the contact moves while theta grows, with its material on the left."""
+        """The fixed curve A with its material on the left, traversed in the direction in which the contact moves for
+        growing theta."""
         return Traced(self.theta, self.space)
 
     @cached_property
@@ -103,7 +105,8 @@ class Centrodes(Valid):
 
     @property
     def body_arc(self) -> Array:
-        """Arc length of the contact on B (n,) [m], in the direction of its motion: equal to `space_arc`."""
+        """Arc length (n,) [m] of the contact on B in the direction of the contact's motion, which equals
+        `space_arc`."""
         return self.body_curve.limits[1] - self.body_curve.arc_of(-self.theta)
 
     @property
@@ -114,7 +117,7 @@ class Centrodes(Valid):
     def rolling(self) -> Rolling:
         """The body curve rolling on the space curve, which reproduces the motion; the start is the middle sample.
 
-        Its `limits` are the ends of the table, up to the error of the tangents there, about `error` per step.
+        The first and last sample limit the rolling, up to an error of the tangents of about `error` per step.
         """
         middle = len(self.theta) // 2
         start = float(self.theta[middle])
@@ -222,7 +225,7 @@ Points = Annotated[int, from_to(2, LARGEST_COUNT)]
 
 @dataclass(frozen=True, eq=False)
 class Shapes(Valid):
-    """Points at equal distances along two boundaries; point i of one touches point i of the other.
+    """Points at equal distances along two boundaries; points of equal index touch each other.
 
     space (n, 2) [m]: the fixed part in the world's frame; body (n, 2) [m]: the moving part in the body's frame; pose
     (n, 3) [m, m, rad]: the pose of the moving part at each contact; error [m]: see `Centrodes`.
@@ -249,7 +252,7 @@ def shapes_of(motion: Centrodes, points: Points = 400) -> Shapes:
 def poses_from_csv(text: str) -> tuple[Array, Array]:
     """Times (n,) [s] and poses (n, 3) [m, m, rad] from CSV with the columns t, x, y, angle in any order.
 
-    Raises InvalidMechanism with the missing column, or with the line that has no finite numbers.
+    Raises InvalidMechanism, which names a missing column or a line with numbers that are not finite.
     """
     reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
     names = [name.strip() for name in reader.fieldnames or []]

@@ -1,6 +1,6 @@
 """Formulas with errors in the chapter, as printed and as corrected, and computations that decide between them.
 
-The list of errors is in `reports/pages/errata/slips`, one document with a deciding script for each. This module has the
+The folder `reports/pages/errata/slips` has a document with a deciding script for each error. This module has the
 formulas that are decided by the motion of an engine.
 """
 
@@ -82,8 +82,8 @@ def acceleration_of_g(
     """a_G (2,) [m/s^2] of a body on a skate, as printed and corrected, for a heading [rad], v_C, vdot_C, thetadot,
     thetaddot and the arm C -> G [m] in the body's frame.
 
-    The printed term has d(j')/dt = -thetadot i', which is along the skate; the correct one has d(i')/dt = thetadot j',
-    which is across it.
+    The printed term has d(j')/dt = -thetadot i', which is along the skate. The correct term has d(i')/dt = thetadot j',
+    which is across the skate.
     """
     along = np.array([math.cos(heading), math.sin(heading)])
     left = np.array([-along[1], along[0]])
@@ -117,7 +117,7 @@ BAR, PHI, PHI_RATE, PHI_ACCELERATION = 0.7, (0.4, -1.1), (2.0, 3.0), (-5.0, 0.6)
 
 
 def bar_end(t: Any, bar: int) -> Any:
-    """The end of a bar from its beginning (2, ...) [m] at times t (...) [s] about 0; analytic."""
+    """The vector (2, ...) [m] from the first to the second end of a bar at times t (...) [s] about 0; analytic."""
     angle = PHI[bar] + PHI_RATE[bar] * t + PHI_ACCELERATION[bar] * t * t / 2
     return BAR * np.stack([np.sin(angle), -np.cos(angle)])
 
@@ -165,7 +165,7 @@ PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
 
 @dataclass(frozen=True)
 class TwoPoints:
-    """Results of problems 18.5.1 and 18.5.2, each (2,) in m/s or m/s^2: of A, of B relative to A, and of B."""
+    """Results (2,) of problems 18.5.1 [m/s] and 18.5.2 [m/s^2] for A, for B relative to A, and for B."""
 
     a: Array
     b_relative_to_a: Array

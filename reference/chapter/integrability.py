@@ -1,10 +1,10 @@
 """Integrability of a mechanism's velocity rows by Frobenius' theorem.
 
-The rows J(q) dq - rate dt are one-forms w_i in q and t; the motions they allow are the null space D of the rows. By
-Frobenius' theorem the rows are integrable if and only if dw_i(X, Y) = 0 for all X, Y in D, that is, if brackets of
-allowed motions are allowed motions. Exactness, dw = 0, is sufficient but not necessary. So the argument of box 18.3,
-that no F exists, proves nothing: a row may be integrable after division by a factor, or together with other rows.
-Brackets that are not in D are added to D until the dimension no longer grows. That dimension is the number of
+The rows J(q) dq - rate dt are one-forms w_i in q and t. The motions that the rows allow are the null space D of the
+rows. By Frobenius' theorem the rows are integrable if and only if dw_i(X, Y) = 0 for all X, Y in D, that is, if
+brackets of allowed motions are allowed motions. Exactness, dw = 0, is sufficient but not necessary. So the argument of
+box 18.3, that no F exists, proves nothing: a row may be integrable after division by a factor, or together with other
+rows. Brackets that are not in D are added to D until the dimension no longer grows. That dimension is the number of
 configuration freedoms (Chow's theorem); dim D is the number of velocity freedoms.
 """
 
@@ -28,7 +28,7 @@ Place = Annotated[Array, of_shape("coordinates")]
 Pose = Annotated[Array, of_shape("bodies", 3)]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
 
-# Derivatives of brackets by Cauchy's formula on a circle. The error is about
+# Derivatives of brackets are computed by Cauchy's formula on a circle. The error is about
 # (CIRCLE_RADIUS / distance to a singularity)^CIRCLE_SAMPLES. Derivatives can be nested, since all functions are
 # analytic.
 CIRCLE_RADIUS = 0.03
@@ -49,7 +49,7 @@ def null_space(rows: Annotated[Array, of_shape("rows", "coordinates")]) -> Array
 
 @validated
 def exterior_derivatives(rows: Rows, place: Place) -> Array:
-    """dw_i (rows, coordinates, coordinates) of the one-forms w_i at a place: d_j w_ik - d_k w_ij, by complex step."""
+    """dw_i = d_j w_ik - d_k w_ij (rows, coordinates, coordinates) of the one-forms w_i at a place, by complex step."""
     shifted = place + 1j * COMPLEX_STEP * np.eye(len(place))
     # slope (rows, coordinate j, component k)
     slope = np.stack([np.imag(rows(shifted_place)) / COMPLEX_STEP for shifted_place in shifted], axis=1)
@@ -58,7 +58,8 @@ def exterior_derivatives(rows: Rows, place: Place) -> Array:
 
 @validated
 def obstruction(rows: Rows, place: Place) -> Array:
-    """dw_i(X_a, X_b) (rows, freedoms, freedoms) on a basis of allowed motions: zero everywhere iff integrable."""
+    """dw_i(X_a, X_b) (rows, freedoms, freedoms) on a basis of allowed motions, which is zero everywhere iff
+    integrable."""
     basis = null_space(rows(place))
     return np.einsum("ijk,ja,kb->iab", exterior_derivatives(rows, place), basis, basis)
 
@@ -114,7 +115,7 @@ def _fields(rows: Rows, place: Place) -> list[Rows]:
 
 @validated
 def growth(rows: Rows, place: Place) -> tuple[int, ...]:
-    """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]], ... at a place, until nothing is added.
+    """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]] and so on at a place, until they no longer grow.
 
     The first number counts velocity freedoms, the last number configuration freedoms: (1,) for a pinned body,
     (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular: if a bracket vanishes at
@@ -152,7 +153,7 @@ def _extended_basis(basis: Array, vectors: list[Array]) -> Array:
 
 @validated
 def mechanism_rows(mechanism: Mechanism) -> Rows:
-    """The one-forms of a mechanism's rows in (q, t), in units of the mechanism's own length and time."""
+    """The one-forms of a mechanism's rows in (q, t), in units of the mechanism's length and time."""
     scale = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rate = -mechanism.rate * mechanism.time_scale
 

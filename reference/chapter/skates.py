@@ -1,10 +1,10 @@
 """Section 18.5 on skates: uniqueness of the skate's row, its Coriolis-like term, and parallel parking (box 18.3).
 
-A linear condition on the velocity of one body that is the same at every position and direction has constant factors in
-the body's own axes: a u + b v + c theta' = 0, with the velocity u, v [m/s] of the centre of mass along them. With
-(a, b) = 0 it is theta' = 0, which is integrable. Otherwise it is a skate: divided by |(a, b)|, it is the velocity of a
-point P along the blade's left normal n = (a, b) / |(a, b)|. Every point P with dot(n, k x P) = c / |(a, b)| has this
-velocity. Then w . curl w = -(a^2 + b^2) < 0, so it is not integrable.
+A linear condition on a body's velocity that is the same at every position and direction is a u + b v + c theta' = 0
+with constants a, b, c. Here u, v [m/s] is the velocity of the centre of mass along the body's axes. If (a, b) = 0, the
+condition is theta' = 0, which is integrable. Otherwise the condition is a skate: by division by |(a, b)| it prescribes
+the velocity zero of a point P along the blade's left normal n = (a, b) / |(a, b)|. P is any point with dot(n, k x P) =
+c / |(a, b)|. Then w . curl w = -(a^2 + b^2) < 0, so it is not integrable.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ def skate_of(row: BodyRow, body: str = "body") -> Skate | None:
 
 @validated
 def one_form(row: BodyRow) -> Callable[[NDArray[Any]], NDArray[Any]]:
-    """The row in the coordinates (x, y, theta) of the world: places (..., 3) to rows (..., 1, 3), analytic."""
+    """The row in the coordinates (x, y, theta) of the world, a function from places (..., 3) to rows (..., 1, 3);
+    analytic."""
     a, b, c = row
 
     def rows(place: NDArray[Any]) -> NDArray[Any]:
@@ -97,7 +98,7 @@ class Move(Valid):
 
 @validated
 def park(start: Triple, goal: Triple, backwards: bool = True) -> tuple[Move, Move]:
-    """Turn, slide and turn from one pose of the skate (x, y, theta) to another; theta may have whole turns.
+    """The moves turn, slide and turn between two poses (x, y, theta) of the skate; theta may have whole turns.
 
     With `backwards` the skate may slide backwards, so that the first turn is at most a quarter turn.
     """
@@ -149,8 +150,8 @@ def commutator(turn: float, slide: float) -> tuple[Move, ...]:
 def commutator_displacement(turn: ArrayLike, slide: ArrayLike) -> Array:
     """The commutator's exact net displacement of C (..., 2) in the start's frame [m]: slide (cos turn - 1, sin turn).
 
-    Divided by turn * slide it tends to (0, 1) as the turn tends to zero, with an error of (-turn/2, -turn^2/6). This
-    sideways direction is the bracket of turning and sliding, and the velocity that the skate forbids.
+    For small turns the displacement is turn * slide * (-turn/2, 1 - turn^2/6). This sideways direction is the bracket
+    of turning and sliding, and the velocity that the skate forbids.
     """
     turn, slide = np.asarray(turn, dtype=float), np.asarray(slide, dtype=float)
     return np.stack([-2 * slide * np.sin(turn / 2) ** 2, slide * np.sin(turn)], axis=-1)
@@ -161,8 +162,8 @@ def sidestep(distance: float, room: Positive, most_turn: Positive) -> tuple[Move
     """Moves straight sideways by `distance` [m] (left, or right if negative), without net turn or advance.
 
     No turn is larger than `most_turn` [rad] and no slide longer than `room` [m]. The symmetric manoeuvre turn, slide,
-    twice the turn back, slide back, turn moves C by exactly (0, 2 slide sin turn). It is repeated until the turn is
-    small enough for the distance. Raises InvalidMechanism for a `most_turn` above a quarter turn.
+    twice the turn back, slide back, turn moves C by exactly (0, 2 slide sin turn). The manoeuvre is repeated as often
+    as the distance requires. Raises InvalidMechanism for a `most_turn` above a quarter turn.
     """
     if most_turn > math.pi / 2:
         raise InvalidMechanism(f"sidestep: most_turn is {most_turn!r} rad; it must be at most a quarter turn, pi/2")

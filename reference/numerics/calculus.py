@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 PANEL_POINTS = 24
 # The panel is halved unless this number of last coefficients of its series are zero to rounding.
 TAIL = 4
-# Halvings of a panel around a jump of the integrand, after which the panel is shorter than rounding.
+# Maximum number of halvings of a panel around a jump of the integrand. The panel is then shorter than rounding.
 MOST_HALVINGS = 46
 
 # Chebyshev points of the first kind. The matrix (coefficients, points) converts values at these points to the series.
@@ -31,7 +31,7 @@ _INTEGRATE = np.polynomial.chebyshev.chebint(np.eye(PANEL_POINTS), lbnd=-1)  # (
 
 
 def _series_at(series: NDArray[Any], place: NDArray[np.float64]) -> NDArray[Any]:
-    """The value (times,) of a series (times, terms) at each place (times,) by Clenshaw's recurrence."""
+    """The values (times,) of Chebyshev series (times, terms) at places (times,) by Clenshaw's recurrence."""
     later, latest = np.zeros_like(series[:, 0]), np.zeros_like(series[:, 0])
     for term in range(series.shape[1] - 1, 0, -1):
         later, latest = series[:, term] + 2 * place * later - latest, later
@@ -114,7 +114,7 @@ CIRCLE_POINTS = 64
 
 
 def derivative(position: Callable[[Any], Any], t: float, order: int = 1, radius: float = 0.25) -> NDArray[np.float64]:
-    """The derivative (...) of an analytic position at time t [s], from its values on a circle of `radius` [s]."""
+    """The derivative (...) of an analytic function at time t [s] from values on a circle of `radius` [s]."""
     circle = radius * np.exp(2j * math.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS)
     integrand = [np.asarray(position(t + z)) / z**order for z in circle]
     return math.factorial(order) * np.mean(integrand, axis=0).real

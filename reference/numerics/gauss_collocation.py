@@ -6,9 +6,9 @@ fixed-point (Picard) iteration. An iteration calls f once with all nodes, at lit
 state. For a fast and a slow oscillation, the method is seven times as fast as an explicit method of order 8 at the same
 tolerance.
 
-States are in extended precision if numpy.longdouble has more digits than a double. With a fast oscillation, the
-rounding error of an angle times the square of the frequency is an error of the acceleration; in double precision it
-would limit the windows to the length of the steps of an explicit method.
+States are in extended precision if numpy.longdouble has more digits than a double. In a fast oscillation the
+acceleration has an error of the angle's rounding times the square of the frequency. In double precision this would
+limit the windows to the length of an explicit method's steps.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from reference.numerics.integration import COARSER, IntegrationFailed, Rates, ho
 
 Array = NDArray[np.float64]
 Extended = NDArray[np.longdouble]
-Accelerations = Callable[[Extended, Extended], Extended]  # angles and rates (..., n) to (..., n)
+Accelerations = Callable[[Extended, Extended], Extended]  # from angles and rates (..., n) to accelerations (..., n)
 
 # Number of stages of a window.
 STAGES = 24
@@ -48,7 +48,7 @@ GUESS_COEFFICIENTS = 8
 # Maximum number of windows; a motion that needs more approaches a singularity.
 MOST_WINDOWS = 20_000
 # Number of windows after which `motion` changes to the explicit method. Accelerations in double precision allow only
-# short windows for a fast oscillation. The attempt costs a tenth of a second.
+# short windows for a fast oscillation. The attempt with so many windows costs a tenth of a second.
 FEW_WINDOWS = 200
 
 
@@ -76,7 +76,7 @@ def legendre(degree: int, x: Extended) -> Extended:
 def rule_of(stages: int) -> CollocationRule:
     """Gauss's rule with this number of stages, accurate to the rounding of numpy.longdouble."""
     nodes = np.polynomial.legendre.leggauss(stages)[0].astype(np.longdouble)
-    for _ in range(3):  # Newton iterations, since numpy's nodes are doubles
+    for _ in range(3):  # Newton iterations improve numpy's nodes, which are doubles
         values = legendre(stages, nodes)
         slope = stages * (nodes * values[stages] - values[stages - 1]) / (nodes**2 - 1)
         nodes = nodes - values[stages] / slope
@@ -258,7 +258,7 @@ def _solve_window(
 
 
 def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
-    """The Legendre polynomials of a step, integrated once and twice from 0 to `part` (times,): (times, n)."""
+    """The Legendre polynomials of a step, integrated once and twice from 0 to `part` (times,), each (times, n)."""
     values = legendre(stages + 1, 2 * part - 1)
     once = _integrated(values)
     return once[:stages].T, _integrated(once)[:stages].T
@@ -267,7 +267,8 @@ def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
 def _integrated(values: Extended) -> Extended:
     """The integrals (n, times) of Legendre polynomials or their integrals (n + 1, times); the last degree is left out.
 
-    On a step of length 1 the integral of P_n is (P_(n+1) - P_(n-1)) / (4 n + 2), and that of P_0 is (P_1 + P_0) / 2.
+    On a step of length 1 the integral of P_n is (P_(n+1) - P_(n-1)) / (4 n + 2), and the integral of P_0 is (P_1 + P_0)
+    / 2.
     """
     degrees = np.arange(1, len(values) - 1, dtype=np.longdouble)[:, None]
     return np.concatenate([(values[:1] + values[1:2]) / 2, (values[2:] - values[:-2]) / (4 * degrees + 2)])

@@ -1,4 +1,4 @@
-"""Integration of motions without a closed form, at tight tolerance, with dense output of full order and a known error.
+"""Integration of motions at a tight tolerance, with dense output of full order and a known error.
 
 The method is the explicit Runge-Kutta pair of order 8 by Dormand and Prince (Hairer, Norsett, Wanner, Solving Ordinary
 Differential Equations I, II.10). Its usual interpolant has order 7 only. Here one more step of order 8 gives the state
@@ -19,7 +19,7 @@ from scipy.integrate import DOP853
 from reference.checks import InvalidMechanism
 
 Array = NDArray[np.float64]
-Rates = Callable[[Array], Array]  # (..., states) -> (..., states), autonomous
+Rates = Callable[[Array], Array]  # from states (..., states) to their rates, autonomous
 
 # Relative error of a step, about the smallest one that double precision allows.
 STEP_TOLERANCE = 3e-14
@@ -30,8 +30,8 @@ MAX_STEPS = 20_000
 # The first step, relative to the time in which the state changes by its value plus its unit. The value is small for any
 # motion, since a step may grow tenfold. SciPy's first step would depend on the unit of time.
 FIRST_STEP = 1e-3
-# Number of steps after which the integration checks whether it can end. It stops if even steps LENGTHENED times as long
-# would need more than the maximum number of steps.
+# Number of steps after which the integration checks whether it can end. The integration stops if even steps LENGTHENED
+# times as long would exceed the maximum number of steps.
 ENOUGH_STEPS = 200
 LENGTHENED = 100.0
 
@@ -47,7 +47,7 @@ def hopeless(now: float, until: float, longest: float, taken: int, most: int) ->
 
 @dataclass(frozen=True)
 class Integrated:
-    """The knots and the rates of a motion; a call with times (times,) [s] returns states (times, states)."""
+    """An integrated motion; a call with times (times,) [s] returns states (times, states)."""
 
     rates: Rates
     times: Array  # (knots,).

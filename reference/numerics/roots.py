@@ -25,7 +25,7 @@ def solve_increasing(
     scale: float,
     limits: tuple[float, float] = (-np.inf, np.inf),
 ) -> Array:
-    """x (...) with function(x) = target (...), to a few roundings of max(|x|, scale).
+    """The roots x (...) of function(x) = target (...), with errors of a few roundings of max(|x|, scale).
 
     `function` returns its values (...) and slopes (...). It must increase within `limits` and is evaluated only there;
     x is clipped to them. Raises ArithmeticError if a target is out of reach or not finite.
@@ -143,7 +143,7 @@ def _crossing(begin: float, end: float, values: Array, series: Array, noise: flo
     if values.min() >= -noise and series[0] - np.abs(series[1:]).sum() > 0:
         return None
     slopes = chebyshev.chebroots(np.trim_zeros(chebyshev.chebder(series), "b"))
-    # Rounding can move two nearly equal roots off the real axis; an additional point does no harm.
+    # Rounding can move two nearly equal roots off the real axis, so roots near the axis are included.
     flat = np.real(slopes[np.abs(np.imag(slopes)) < 1e-3])
     places = np.unique(np.concatenate([_LOBATTO_POINTS, np.clip(flat, -1, 1)]))
     heights = chebyshev.chebval(places, series)

@@ -1,4 +1,4 @@
-"""Closed boundaries that are not round, by arc length: the ellipse, and smooth convex cams.
+"""Ellipses and smooth convex cams as boundaries that are described by arc length.
 
 The arc of an ellipse is an elliptic integral, continued over any number of turns. The support function of a cam is a
 Fourier series, and only its inverse of the arc has no closed form.
@@ -18,8 +18,8 @@ from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, Curve, along
 
-# Number of tabulated points in half a turn. Cubic interpolation between them has an error of at most 1e-9, except for
-# very flat ellipses.
+# Number of tabulated points in half a turn. Cubic interpolation between the points has an error of at most 1e-9, except
+# for very flat ellipses.
 GUESSES = 257
 
 
@@ -78,7 +78,7 @@ class Ellipse(Curve):
 
     def parameter(self, arc: ArrayLike) -> Array:
         arc = along(arc)
-        # The root is searched within half a turn, so that its error does not grow with the number of turns.
+        # The search is within half a turn, so that the error does not grow with the number of turns.
         half_turns = np.round(arc / (self.length / 2))
         rest = arc - half_turns * (self.length / 2)
         root = solve_increasing(lambda u: (self.arc_of(u), self.speed_of(u)), rest, self._guess(rest), 1e-3)
@@ -128,11 +128,11 @@ class Cam(Curve):
 
     h = radius + sum over k = 1.. of cosines[k-1] cos(k nu) + sines[k-1] sin(k nu),
 
-    with nu its natural parameter.
+    and nu is the natural parameter.
 
     The first terms shift the cam (cosines=(e,) is a disc with eccentricity e); the second terms make it oval, the third
-    terms three-lobed. The radius of curvature is h + h'', the arc its integral; at arc 0 the normal points to +x.
-    Raises InvalidMechanism if the radius of curvature is not positive everywhere.
+    terms three-lobed. The radius of curvature is h + h'', and the arc is the integral of h + h''. The normal points to
+    +x at arc 0. Raises InvalidMechanism if the radius of curvature is not positive everywhere.
     """
 
     radius: Positive
@@ -176,8 +176,8 @@ class Cam(Curve):
         normals = np.zeros(1)
         if np.any(np.abs(polynomial) > 0):
             roots = np.roots(polynomial)
-            # Roots on the unit circle are extrema. Additional candidates do not change the minimum and the
-            # maximum.
+            # Roots on the unit circle are extrema. Roots off the circle do no harm, since the minimum and the maximum
+            # of all candidates are used.
             normals = np.concatenate([normals, np.angle(roots[np.abs(roots) > 0])])
         bends = self.speed_of(normals)
         low, high = int(np.argmin(bends)), int(np.argmax(bends))

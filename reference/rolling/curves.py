@@ -29,10 +29,10 @@ Vector = tuple[float, float]
 
 
 class Curve(Valid, ABC):
-    """A boundary by arc length [m], in the frame of the body that owns it; subclasses are frozen dataclasses.
+    """A boundary described by arc length [m] in a body's frame; subclasses are frozen dataclasses.
 
-    `length` [m]: once round, infinite if the curve is not closed; `limits` [m]: the first and last arc;
-    `curvature_range` [1/m]: infimum and supremum of the curvature. All functions take arrays of any shape and are
+    `length` [m] is the circumference, or infinite if the curve is not closed. `limits` [m] are the first and last arc.
+    `curvature_range` [1/m] is the infimum and supremum of the curvature. All functions take arrays of any shape and are
     continuous over many turns. Each curve is defined by functions of its natural parameter p.
     """
 
@@ -185,7 +185,7 @@ def straight_has_no_inverse(owner: str) -> InvalidMechanism:
 
 @dataclass(frozen=True)
 class Line(ByArc):
-    """A straight boundary through a point [m], traversed towards `heading` [rad], material on its left.
+    """A straight boundary through a point [m], traversed towards `heading` [rad] with the material on the left.
 
     The default heading pi is flat ground with its material below; pi + slope is an incline that rises to +x.
     """
@@ -212,7 +212,8 @@ class Line(ByArc):
 
 @dataclass(frozen=True)
 class Side(ByArc):
-    """The lower side of a square of side `side` [m] about the origin: arcs from -side/2 to side/2, traversed to +x.
+    """The lower side of a square about the origin with sides of `side` [m], traversed to +x with arcs from -side/2 to
+    side/2.
 
     Arcs beyond the ends are refused, since the ends are corners of infinite curvature.
     """
@@ -277,7 +278,7 @@ class _Round(ByArc):
 
 @dataclass(frozen=True)
 class Circle(_Round):
-    """A disc's rim; arc 0 is its point at +x, where the tangent angle is pi/2."""
+    """A disc's rim, with arc 0 at +x, where the tangent angle is pi/2."""
 
 
 @dataclass(frozen=True)

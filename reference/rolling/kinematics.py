@@ -1,4 +1,5 @@
-"""One rigid curve rolling on another: pose, velocity (18.66) and acceleration as functions of the rotation."""
+"""Pose, velocity (18.66) and acceleration of a rigid curve that rolls on a fixed curve, as functions of the
+rotation."""
 
 from __future__ import annotations
 
@@ -74,7 +75,8 @@ class Rolling(Valid):
 
     @cached_property
     def _start_angles(self) -> tuple[float, float]:
-        """Tangent angles of ground and body at the start. They are not wrapped, and only their changes are used."""
+        """Tangent angles of ground and body at the start. The angles are not wrapped, and only changes of the angles
+        are used."""
         return float(self.ground.angle(self.ground_arc)), float(self.body.angle_of(self._body_start))
 
     @cached_property
@@ -94,7 +96,8 @@ class Rolling(Valid):
         return arc
 
     def _rotation(self, body_parameter: Array) -> tuple[Array, Array]:
-        """-(theta - start) (...) and its derivative by the body's parameter, positive if rolling is possible."""
+        """-(theta - start) (...) and its derivative by the body's parameter, which is positive if rolling is
+        possible."""
         ground = self.ground.parameter(self._ground_arc(self.body.arc_of(body_parameter)))
         ground_start, body_start = self._start_angles
         turned = (self.ground.angle_of(ground) - ground_start) - (self.body.angle_of(body_parameter) - body_start)
@@ -193,7 +196,7 @@ class Rolling(Valid):
         return np.concatenate([contact.point + contact.arm, contact.theta[..., None]], axis=-1)
 
     def _arm(self, contact: Contact, point: Vector | ArrayLike) -> Array:
-        """r_{P/C} (..., 2) [m] of a point P of the body, in its own frame."""
+        """r_{P/C} (..., 2) [m] for a point P of the body, given in the body's frame."""
         return contact.arm + rotated(contact.theta, np.asarray(point, dtype=float))
 
     @validated

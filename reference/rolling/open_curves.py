@@ -86,10 +86,10 @@ class Catenary(ByArc):
 
 @dataclass(frozen=True)
 class LogSpiral(Curve):
-    """r = radius exp(growth p) [m] about its pole, the origin, traversed outwards; arc is measured from the pole.
+    """r = radius exp(growth p) [m] about its pole, the origin, traversed outwards. Arcs are measured from the pole.
 
-    The natural parameter p is the polar angle [rad]; it tends to -infinity at the pole, although the arc to the pole is
-    finite. The pole, arc 0, is refused, since the curvature 1 / (growth arc) is infinite there.
+    The natural parameter p is the polar angle [rad], which tends to -infinity at the pole. The pole, arc 0, is refused,
+    since the curvature 1 / (growth arc) is infinite there.
     """
 
     radius: Positive

@@ -1,4 +1,4 @@
-"""The joint Roll: a curve of the second body rolls without slip on a curve of the first, or of the ground."""
+"""The joint Roll: a curve of the second body rolls without slip on a curve of the first body or the ground."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Roll(BetweenTwo, JointElement):
 
     @property
     def fallback_lengths(self) -> tuple[float, ...]:
-        """The radii of curvature of both curves [m] where they touch at the start."""
+        """The radii of curvature of both curves [m] at the contact at the start."""
         sides = ((self.rolling.ground, self.rolling.ground_arc), (self.rolling.body, self.rolling.body_arc))
         curvatures = [abs(float(curve.curvature(arc))) for curve, arc in sides]
         return tuple(1 / curvature for curvature in curvatures if curvature)

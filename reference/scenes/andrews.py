@@ -1,4 +1,4 @@
-"""Andrews' squeezing mechanism as a scene, with the numbers and the names of the test set for initial value problems.
+"""The scene of Andrews' squeezing mechanism, with numbers and names of the test set for initial value problems.
 
 The directions of the bars, the reduced inertia and the potential are closed functions of the crank's angle phi, which
 `reference/scenes/derivations.md` derives. Vectors of the plane are complex numbers.
@@ -38,13 +38,13 @@ SIDES = (-1, 1, -1)
 
 @dataclass(frozen=True)
 class Andrews(PlacedScene):
-    """Seven bodies of `masses` [kg] and `inertias` [kg m^2], from rest with the crank at `angle` [rad].
+    """Seven bodies with `masses` [kg] and `inertias` [kg m^2] start from rest with the crank at `angle` [rad].
 
     Lengths [m] in the test set's letters are `crank` (rr, ra), `rod` (d, da), `bar` (ss, sa, sb), `spring_point` (sc,
     sd), `upper` (zt, ta, tb), `upper_end` (e, ea), `lower` (u, ua, ub) and `lower_end` (zf, fa). In each field but
     `spring_point` the length between two joints is first, and the position of the centre of mass follows. The spring
     has `stiffness` [N/m] and `rest_length` [m]. The crank has a constant `torque` [N m]. There is no gravity. Raises
-    InvalidMechanism for numbers that don't assemble at the start.
+    InvalidMechanism if the bars can't be assembled at the start.
     """
 
     name: ClassVar[str] = "andrews"
@@ -67,7 +67,7 @@ class Andrews(PlacedScene):
     torque: float = 0.033
     angle: float = -0.0617138900142764496358948458001
     duration: Positive = 0.05
-    horizon: Positive = 0.05  # one freedom and constant energy: errors grow about linearly
+    horizon: Positive = 0.05  # errors grow about linearly, since one freedom has constant energy
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -94,8 +94,8 @@ class Andrews(PlacedScene):
     def angles(self, phi: ArrayLike) -> tuple[Moving, ...]:
         """Angles of the seven bodies [rad] and their derivatives by the crank's angle phi (...) [rad].
 
-        Frames are those of the test set. The crank's angle is phi; the angles of the swinging bodies are between -pi
-        and pi. NaN for angles at which the bars can't be assembled.
+        The bodies' frames are those of the test set. The crank's angle is phi; the angles of the swinging bodies are
+        between -pi and pi. The result is NaN if the bars can't be assembled.
         """
         return self._angles(np.asarray(phi, dtype=float))
 
@@ -165,7 +165,7 @@ class Andrews(PlacedScene):
 
     @cached_property
     def rate_unit(self) -> float:
-        """Approximate rate of the crank after one radian [rad/s]; its inverse is the integration's unit of time."""
+        """Approximate rate of the crank after one radian [rad/s]. The inverse is the integration's unit of time."""
         strength = abs(self.torque) + self.stiffness * self.crank[0] ** 2
         return math.sqrt(strength / float(self._reduced(np.array(self.angle))[0]))
 
@@ -279,8 +279,8 @@ class Dyad(Valid):
         """Directions of both bars [rad], between -pi and pi, for the complex vector `reach` [m] from the pivot to the
         point.
 
-        NaN for points out of reach. reach = a e^(i mu) + b e^(i nu), so the component of its derivative along one bar
-        depends only on the rotation of the other.
+        The result is NaN for points out of reach. With reach = a e^(i mu) + b e^(i nu), the component of the derivative
+        along one bar depends only on the rotation of the other bar.
         """
         a, b = self.first, self.second
         with np.errstate(invalid="ignore", divide="ignore"):

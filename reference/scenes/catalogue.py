@@ -61,7 +61,7 @@ SCENES: tuple[Scene, ...] = (
 
 @validated
 def scene(name: Name) -> Scene:
-    """The scene of that name; raises ValueError that suggests the nearest name."""
+    """The scene with this name. Raises ValueError with the nearest name for an unknown name."""
     by_name = {member.name: member for member in SCENES}
     if name in by_name:
         return by_name[name]

@@ -29,9 +29,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NFourBar(Scene):
-    """`loops` N, `length` [m] of every bar and of the ground between pivots, `mass` [kg] of every bar, gravity [m/s^2].
+    """`loops` is N. `length` [m] is the length of every bar and the distance of the pivots, and `mass` [kg] the mass of
+    every bar.
 
-    Starts upright with the first crank's top moving at `speed` [m/s] to +x. Bodies: cranks 0..N, then couplers 0..N-1.
+    The motion starts upright; the cranks' tops move at `speed` [m/s] to +x. Bodies: cranks 0..N, then couplers 0..N-1.
     """
 
     name: ClassVar[str] = "n_four_bar_2"
@@ -60,7 +61,8 @@ class NFourBar(Scene):
 
     @validated
     def singular_times(self, until: NonNegative) -> Array:
-        """The times in [0, until] s at which the cranks are parallel to the couplers, with N + 1 freedoms."""
+        """The times in [0, until] s at which the cranks are parallel to the couplers, where the rows leave N + 1
+        freedoms."""
         if not self.speed:
             return np.zeros(0)
         sides = [self.pendulum.passages(side * math.pi / 2, until) for side in (1, -1)]
@@ -102,7 +104,8 @@ class NFourBar(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         require_room(f"scene {self.name!r}: a trajectory", (len(times), 2 * self.loops + 1, 3))
-        # A chain at rest stays at the top. The double nearest to pi is not exactly the top, so `Pendulum` would fall.
+        # A chain at rest stays at the top. `Pendulum` would fall, since the double nearest to pi is not exactly the
+        # top.
         zero = np.zeros(len(times))
         angle, rate, acceleration = self.pendulum.motion(times) if self.speed else (zero + math.pi, zero, zero)
         pose, twist, _ = self._placement(angle, rate, acceleration)
@@ -110,7 +113,8 @@ class NFourBar(Scene):
 
     @validated
     def forces(self, angle: Array, rate: Array, acceleration: Array) -> Array:
-        """The reactions (times, rows) [N] in closed form, accurate also near a singular position, where they are large.
+        """The reactions (times, rows) [N] in closed form, which is accurate also for large forces near a singular
+        position.
 
         A coupler that doesn't rotate has equal vertical forces at its ends. The balance of moments of a crank about its
         pivot gives the horizontal force on its top. The balance of forces of each coupler gives the force on the next
@@ -118,12 +122,12 @@ class NFourBar(Scene):
         """
         n, m, size = self.loops, self.mass, self.length
         _, _, moving = self._placement(angle, rate, acceleration)
-        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))  # the sum of its two pin forces
+        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))  # sum of the pin forces
         crank = m * (moving[:, 0, :2] + np.array([0.0, self.gravity]))
         down = direction_of(angle)
         top = np.zeros((len(angle), n + 1, 2))  # forces of the couplers on each crank's top
         top[:, :, 1] = -coupler[:, None, 1] * np.where(np.arange(n + 1) % n == 0, 0.5, 1.0)
-        # I phi'' = l down x top + (l/2) down x (m g), solved for the horizontal part, whose lever arm is -l down_y.
+        # I phi'' = l down x top + (l/2) down x (m g) is solved for the horizontal force, whose lever arm is -l down_y.
         moment = m * size**2 / 3 * acceleration + 0.5 * m * self.gravity * size * down[:, 0]
         top[:, :, 0] = (size * down[:, 0, None] * top[:, :, 1] - moment[:, None]) / (size * down[:, 1, None])
         out = np.zeros((len(angle), 2 * (3 * n + 1)))
@@ -138,11 +142,10 @@ class NFourBar(Scene):
         return out
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """+1 if every loop is a parallelogram, -1 if a loop is folded, with its coupler along a crank.
+        """+1 if every loop is a parallelogram, or -1 if a loop is folded with its coupler along a crank.
 
-        A loop of equal bars can fold in two ways: one crank lies along the ground and the other along the coupler. The
-        form with the smallest error of the angles is chosen; at a singular position all forms fit, and the branch is
-        +1.
+        In a folded loop one crank lies along the ground and the other crank along the coupler. The form with the
+        smallest error of the angles is chosen; at a singular position all forms fit, and the branch is +1.
         """
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
         first, second = cranks[..., :-1], cranks[..., 1:]

@@ -1,4 +1,4 @@
-"""A person on one foot or two: a trunk, thighs and shanks as five links that fall without muscle torques.
+"""A person on one foot or two feet, whose trunk, thighs and shanks are five links that fall without muscle torques.
 
 `reference/scenes/derivations.md` has coordinates, modes and the sources of the segments. The ankles are pins in the
 ground, at y = 0.
@@ -260,8 +260,8 @@ class SwayingOnOneFoot(OneFoot):
 def modes_upright(person: OneFoot) -> tuple[Array, Array]:
     """Eigenvalues s [1/s^2] (5,), ascending, and shapes (5, 5) in columns of small motions u'' = s u about upright.
 
-    For s < 0 the mode swings at sqrt(-s) rad/s, for s > 0 it grows like e^(sqrt(s) t). The linear equations are finite
-    differences of the equations of motion.
+    For s < 0 a mode swings at sqrt(-s) rad/s; for s > 0 a mode grows like e^(sqrt(s) t). The linear equations are
+    finite differences of the equations of motion.
     """
     upright, rest = np.array(UPRIGHT), np.zeros(5)
 

@@ -1,8 +1,9 @@
 """Exact motions of a body on a pin, on one skate without and with a slope, and at rest on several skates.
 
-With u the skate's speed along i', w the turning rate, a the offset of the centre of mass ahead of the skate: u' = a
-w^2, (I + m a^2) w' = -m a u w (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m the
-energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant, and u = V tanh p, w = (V/k) sech p with p = c + a V t/k^2.
+The skate's speed u along i' and the turning rate w satisfy u' = a w^2 and (I + m a^2) w' = -m a u w, where the centre
+of mass is at a ahead of the skate (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m the
+energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant. The solution is u = V tanh p and w = (V/k) sech p with p = c + a V
+t/k^2.
 """
 
 from __future__ import annotations
@@ -101,8 +102,8 @@ class ChaplyginSleigh(Scene):
 
     mass [kg]; inertia [kg m^2] about the centre of mass, which is `offset` [m] ahead of the skate, or behind it if
     negative; speed [m/s] of the skate along its heading and turning_rate [rad/s] at t = 0, of any sign; start: the
-    skate's pose. With zero inertia, a point mass, there is a motion but no mechanism. Raises InvalidMechanism if
-    inertia and offset are zero.
+    skate's pose. A point mass, with zero inertia, has a motion but no mechanism. Raises InvalidMechanism if inertia and
+    offset are zero.
     """
 
     name: ClassVar[str] = "sleigh"
@@ -127,7 +128,7 @@ class ChaplyginSleigh(Scene):
 
     @cached_property
     def _arm(self) -> float:
-        """k, the radius of gyration about the skate [m]."""
+        """The radius of gyration k about the skate [m]."""
         return math.hypot(math.sqrt(self.inertia / self.mass), self.offset)
 
     @cached_property
@@ -192,7 +193,7 @@ class ChaplyginSleigh(Scene):
         return Antiderivative(velocity, 1 / fastest if fastest > 0 else 1.0)
 
     def skate_pose(self, t: ArrayLike) -> Array:
-        """Pose of the skate (times, 3); heading in closed form, position by quadrature to rounding."""
+        """Poses of the skate (times, 3), with the position by quadrature to rounding."""
         return self._skate_pose(self.times(t))
 
     def _skate_pose(self, t: Array) -> Array:
@@ -245,9 +246,9 @@ class SkateOnSlope(Scene):
     """A body with its skate under the centre of mass on an incline.
 
     No moment acts, so theta = heading + turning_rate t, and the speed along the blade has the rate u' = -gravity sin
-    theta. The path is a cycloid without mean descent (Neimark and Fufaev). With turning_rate 0 and the blade across the
-    slope (heading 0) the body is at rest, and the blade's force is m g. mass [kg], inertia [kg m^2]; gravity [m/s^2]
-    along the incline, to -y; speed [m/s] along the blade at t = 0.
+    theta. The path is a cycloid and does not descend in the mean (Neimark and Fufaev). With turning_rate 0 and the
+    blade across the slope (heading 0) the body is at rest, and the blade's force is m g. mass [kg], inertia [kg m^2];
+    gravity [m/s^2] along the incline, to -y; speed [m/s] along the blade at t = 0.
     """
 
     name: ClassVar[str] = "skate_on_slope"
@@ -280,7 +281,7 @@ class SkateOnSlope(Scene):
         return Trajectory(t, pose[:, None, :], twist[:, None, :], force[:, None])
 
     def _path(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """x and y of the blade [m]: the integrals of u cos theta and u sin theta."""
+        """x and y of the blade [m], the integrals of u cos theta and u sin theta."""
         first, rate, pull = self.heading, self.turning_rate, self.gravity
         if abs(rate) * float(t.max(initial=0.0)) < 1:
             # The closed form divides by the rate's square. For a rotation of less than a radian Gauss quadrature is
@@ -294,7 +295,7 @@ class SkateOnSlope(Scene):
         angle = first + rate * t
         chord = 2 * np.sin(0.5 * rate * t) / rate  # chord of a circle at unit speed
         middle = first + 0.5 * rate * t
-        # u = free + (pull/rate) cos theta, free = speed - (pull/rate) cos first.
+        # u = free + (pull/rate) cos theta with free = speed - (pull/rate) cos first.
         free = self.speed - pull / rate * math.cos(first)
         twice = (np.sin(2 * angle) - math.sin(2 * first)) / (4 * rate)
         x = free * chord * np.cos(middle) + pull / rate * (0.5 * t + twice)
@@ -304,7 +305,7 @@ class SkateOnSlope(Scene):
 
 @dataclass(frozen=True)
 class HeldBySkates(Scene):
-    """A body at rest on a slope, on skates that remove all freedoms of velocity.
+    """A body at rest on a slope, whose skates remove all freedoms of velocity.
 
     Two skates always leave one freedom, since their axles intersect in the centre of rotation or are parallel. A third
     skate removes this freedom. points [m] from the centre of mass; angles [rad] of the blades relative to the body;

@@ -2,8 +2,8 @@
 fail.
 
 The crank turns about the origin; the slider moves along the line y = offset. With crank r, rod l, offset e and crank
-angle theta, the rod's angle beta follows from r sin(theta) + l sin(beta) = e, and x = r cos(theta) + l cos(beta).
-`branch` is the sign of cos(beta).
+angle theta, the rod's angle beta satisfies r sin(theta) + l sin(beta) = e. The slider is at x = r cos(theta) + l
+cos(beta). `branch` is the sign of cos(beta).
 
 The block slides with its centre of mass in a slot, and a drive of rate zero keeps its angle. Methods fail if a rod's
 end slides in the slot without a block, and if a slider starts to move near a dead centre.
@@ -73,7 +73,7 @@ class SliderCrank(Valid):
 
     @validated
     def rates(self, theta: Complexes) -> tuple[Any, Any]:
-        """The derivatives of beta [1] and x [m] by theta (...), analytic."""
+        """The derivatives of beta [1] and x [m] with respect to theta (...), analytic."""
         return self._rates(theta)
 
     def _rates(self, theta: Any) -> tuple[Any, Any]:
@@ -188,7 +188,7 @@ class DrivenSliderCrank(EmbeddedScene):
 
 @dataclass(frozen=True)
 class FreeSliderCrank(DrivenSliderCrank):
-    """The free slider-crank, released at `angle` with `rate`, under gravity."""
+    """The free slider-crank under gravity, which starts at `angle` with `rate`."""
 
     name: ClassVar[str] = "free_slider_crank"
     driven: ClassVar[bool] = False
@@ -226,7 +226,7 @@ class RodEndInSlot(DrivenSliderCrank):
 class SliderAtDeadCentre(FreeSliderCrank):
     """The slider-crank released at rest near the outer dead centre, under gravity along the slot.
 
-    It would stay at rest at the dead centre. `angle` [rad] determines when and to which side it moves away.
+    It would stay at rest at the dead centre. `angle` [rad] determines the time and the direction of its motion.
     """
 
     name: ClassVar[str] = "slider_at_dead_centre"

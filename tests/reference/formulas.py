@@ -27,7 +27,7 @@ def root(square: Any) -> Any:
 
 
 def solved(rows: list[list[Any]], right: list[Any]) -> list[Any]:
-    """The solution x of the linear system rows x = right."""
+    """The solution x of a linear system with the matrix `rows`."""
     return list(mp.lu_solve(mp.matrix(rows), mp.matrix(right)))
 
 
@@ -171,7 +171,8 @@ def swing(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
 
 
 def drawn_pendulum(rng: np.random.Generator) -> tuple[float, ...]:
-    """Random pendulums, half of them near the separatrix or an equilibrium, at times up to 100 radians of phase."""
+    """Random pendulums at times up to 100 radians of phase; half of the pendulums are near the separatrix or an
+    equilibrium."""
     frequency, start = decades(rng), angle(rng, (0.0, math.pi, -math.pi))
     start = math.remainder(start, 2 * math.pi)
     rate = 2 * frequency * float(rng.normal())
@@ -301,7 +302,7 @@ def cam(radius: Any, *numbers: Any) -> list[Any]:
 
 
 def curve_at(curve: Curve, place: float) -> list[Any]:
-    """Arc, tangent angle, point and curvature of a curve of the reference at a parameter."""
+    """Arc, tangent angle, point and curvature of one of the reference's curves at a parameter."""
     return [curve.arc_of(place), curve.angle_of(place), *curve.point_of(place), curve.curvature_of(place)]
 
 
@@ -312,14 +313,14 @@ def drawn_ellipse(rng: np.random.Generator) -> tuple[float, ...]:
 
 
 def turned(rng: np.random.Generator) -> float:
-    """A random angle of up to a few turns, often near the end of an axis."""
+    """A random angle of up to a few turns, often near a multiple of a right angle."""
     if rng.random() < 0.5:
         return float(rng.uniform(-20, 20))
     return float(rng.integers(-4, 5)) * math.pi / 2 + float(rng.choice([-1, 1])) * decades(rng, -12, 0)
 
 
 def drawn_cam(rng: np.random.Generator) -> tuple[float, ...]:
-    """A random convex cam, whose radius exceeds the sum of (k^2 - 1) c_k, often by little."""
+    """A random convex cam, which is often nearly not convex."""
     radius, spread = decades(rng), (0.1 if rng.random() < 0.7 else 0.35)
     c = [radius * float(rng.uniform(-1, 1)) for _ in range(2)]
     return radius, *c, *(radius * spread * float(rng.uniform(-1, 1)) / share for share in (3, 3, 8, 8))

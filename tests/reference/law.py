@@ -126,7 +126,7 @@ def searched(law: Law, cases: int, seed: int) -> Iterator[Miss]:
 
 
 def decades(rng: np.random.Generator, low: float = -9, high: float = 9) -> float:
-    """A positive number whose logarithm is uniform."""
+    """A positive random number with a uniform logarithm."""
     return float(10 ** rng.uniform(low, high))
 
 

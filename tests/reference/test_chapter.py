@@ -1,4 +1,4 @@
-"""Centrodes of known motions, and shapes."""
+"""Tests of centrodes of known motions, and of shapes."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_the_velocity_at_the_instant_centre_is_zero():
     space, body = instant_centre(pose, twist)
     arm = space - pose[:, :2]
     velocity = twist[:, :2] + twist[:, 2:] * np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-    # The chapter's r_C = 0 (erratum 2) would place the instant centre at the origin.
+    # By the chapter's r_C = 0 (erratum 2) the instant centre would be the origin.
     np.testing.assert_allclose(velocity, 0, atol=1e-14 * np.abs(arm).max())
     assert np.abs(space).max() > 0.1
     turned = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
@@ -152,5 +152,5 @@ def test_the_error_bound_of_centrodes_from_poses_is_above_their_true_error():
     twist = np.column_stack([-0.6 * np.sin(2 * run), 0.3 * np.cos(3 * run), 3 + 0.1 * np.cos(5 * run)]) * pace[:, None]
     found, exact = from_poses(t, pose), centrodes(t, pose, twist)
     wrong = np.linalg.norm(found.space - exact.space, axis=-1).max()
-    # The interpolation error of the exact centrodes is smaller than the error by numerical differentiation.
+    # Exact centrodes have a smaller error than centrodes by numerical differentiation.
     assert exact.error < wrong < found.error

@@ -35,7 +35,7 @@ FOUND = {
         *(11902.645692682283, -10724.66978055462, 4319.19523390655, -166.8134543432839, -232.1255391750947),
         *(216.8935151019048, -199.632266555443, -4.975638815152181e-08),
     ),
-    # The tangent angle was a sum of a circle's angle and an excess, which cancelled on the flat side.
+    # On the flat side the two terms of the tangent angle nearly cancelled.
     "ellipse at a parameter": (0.2970230243104033, 0.0011085289153370565, -1.5707907017221043),
     # The logarithm of a number near 1 lost digits for a short path, and the sum of two angles on a circle that is
     # shorter than the drawbar.
@@ -55,7 +55,7 @@ def test_arguments_that_once_lost_digits_have_errors_of_a_few_roundings(law: str
 
 def test_the_search_notices_a_relative_error_of_1e_minus_13() -> None:
     for law in LAWS:
-        if "limit" in law.name:  # always near a dead centre, which amplifies roundings of the arguments
+        if "limit" in law.name:  # near a dead centre, where roundings of the arguments are amplified
             continue
         wrong = replace(law, ours=lambda *numbers, law=law: np.asarray(law.ours(*numbers), dtype=float) * (1 + 1e-13))
         assert max(searched(wrong, 6, 1), key=lambda one: one.ratio).ratio > ROUNDINGS, law.name

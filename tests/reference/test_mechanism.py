@@ -268,7 +268,7 @@ def test_the_band_solver_recovers_the_reactions_from_the_accelerations(scene: An
     mechanism = scene.mechanism()
     pose, forces, excess = pushed(mechanism)
     found = banded_reaction(mechanism.joint_rows, pose, excess, mechanism.inertias)
-    # The condition number of the system of a hundred links is about 1e4.
+    # The system of a hundred links has a condition number of about 1e4.
     assert np.abs(found - forces).max() < 1e-11
     # The acceleration of free fall is added and subtracted, which causes a rounding error.
     assert np.abs(mechanism.reaction(pose, mechanism.free_fall + excess) - found).max() < 1e-11

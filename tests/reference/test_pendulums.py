@@ -96,7 +96,7 @@ def test_accelerations_from_joint_forces_agree_with_lagranges_equations(links: i
     chain, angle, rate = random_chain(links)
     found = chain.accelerations(angle, rate)
     expected = np.array([lagrangian_accelerations(chain, a, r) for a, r in zip(angle, rate, strict=True)])
-    # The condition numbers of both systems are proportional to links^2.
+    # Both systems have condition numbers proportional to links^2.
     assert np.abs(found - expected).max() < 1e-15 * (10 + links**2) * np.abs(expected).max()
     alone = np.array([chain.forces(a, r) for a, r in zip(angle, rate, strict=True)])
     assert np.abs(chain.forces(angle, rate) - alone).max() < 1e-12 * np.abs(alone).max()

@@ -112,7 +112,7 @@ def fastest(mechanism: Mechanism, motion: Trajectory) -> float:
 
 
 def off_the_joints(mechanism: Mechanism, motion: Trajectory) -> float:
-    """The largest gap and slip, relative to the length and the speed of the motion."""
+    """The largest gap and slip, relative to the motion's length and speed."""
     place = 1 + np.abs(motion.pose / mechanism.pose_unit).max()
     length = np.where(mechanism.is_angular, 1.0, mechanism.length_scale)
     gap = np.nanmax(np.abs(joint_gap(mechanism, motion) / length), initial=0.0) / place
@@ -189,7 +189,7 @@ def test_lagrange_multipliers_give_the_same_motion_as_the_scene(each: Scene) -> 
     exact = each.motion(run.t)
     met = np.all(np.isfinite(run.pose), axis=(1, 2))  # Lagrange's equations stop at a singular position
     assert met[1]
-    # Both integrations have a tolerance of 1e-13 per step; nearly straight knees amplify the difference.
+    # Reference and engine have a tolerance of 1e-13 per step; nearly straight knees amplify the difference.
     assert np.abs((run.pose - exact.pose) / mechanism.pose_unit)[met].max() < 1e-10
     reaction = np.nan_to_num(np.abs(run.reaction - exact.reaction))[met]
     assert reaction.max(initial=0.0) <= 1e-8 * np.nanmax(np.abs(exact.reaction[met]), initial=0.0)
@@ -198,8 +198,8 @@ def test_lagrange_multipliers_give_the_same_motion_as_the_scene(each: Scene) -> 
 # One scene of each name suffices, since the bound is computed by the same rule for all numbers.
 @pytest.mark.parametrize("each", {each.name: each for each in ALL[::-1] if truth_error(each)}.values(), ids=name_of)
 def test_the_error_bound_of_an_integrated_reference_motion_is_small(each: Scene) -> None:
-    # The tolerance is 1e-13 per step in several hundred steps. A deviation of a person's knee grows by a factor of e in
-    # 0.03 s.
+    # The motion has several hundred steps with a tolerance of 1e-13. A deviation of a person's knee grows by a factor
+    # of e in 0.03 s.
     last = min(each.horizon, each.duration, 0.9 * getattr(each, "corner", math.inf))
     stated = present(truth_error(each))(np.linspace(0.0, last, 9))
     assert stated.max() < (1e-9 if each.name == "person_swaying" else 1e-10)

@@ -1,7 +1,7 @@
 """Tests that a scene with lengths of nanometres or gigametres has the scaled motion.
 
-A change of unit by a power of two changes no digit of a product, sum or root. So any difference is caused by a constant
-that depends on a unit.
+A change of unit by an even power of two changes no digit of products, sums and roots. So any difference is caused by a
+constant that depends on a unit.
 """
 
 from __future__ import annotations
@@ -116,5 +116,5 @@ COSTLY = (
 def test_the_motion_of_a_scene_does_not_depend_on_units(scene: Scene, scale: str) -> None:
     # The motions differ by rounding. Scenes in COSTLY are slow, and their rounding errors may grow tenfold up to
     # the horizon.
-    allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # Joint forces sum more roundings.
+    allowed = 1e-11 if scene.name == "pendulum_100" else 1e-12  # Joint forces of long chains sum more roundings.
     assert difference(scene, SCALES[scale]) < allowed

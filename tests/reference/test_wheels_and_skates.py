@@ -148,7 +148,7 @@ def test_the_jackknife_time_of_a_reversing_trailer_agrees_with_the_closed_form()
     for bend in (
         -0.3,
         0.3,
-    ):  # the first trailer stays straight, and its axle is the hitch of the second
+    ):  # the first trailer's axle is the second trailer's hitch
         pair = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
         second = pair.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, bend), [4.0], limit=1.0)
         assert (driven.jackknifed, second.jackknifed) == (1, 2)

@@ -42,12 +42,13 @@ MOST_TRIED = 6
 class Mistake:
     """One wrong number of a mechanism. The `owner` is a body or joint, or "" for gravity and the ground's points.
 
-    Kinds, for a relative error r, with L the mechanism's length and T its time scale:
+    The kinds are explained for a relative error r, the mechanism's length L and its time scale T.
 
-    mass, inertia: of a body, times 1 + r. length: all joint points of a body, times 1 + r. gravity: times 1 + r, or r L
-    / T^2 downwards if there is none. point: of a joint, moved by r L. angle: of a skate's blade, a slot's line, a
-    drive's start or a rolling curve, plus r. size: of a rolling curve, times 1 + r. rate: of a drive, or of the whole
-    start if nothing is driven, times 1 + r, or r / T if it is zero.
+    mass, inertia: a body's value times 1 + r. length: the positions of all joints of a body, times 1 + r. gravity:
+    gravity times 1 + r, or r L / T^2 downwards if gravity is zero. point: a joint's point, moved by r L. angle: the
+    angle of a skate's blade, a slot's line, a drive's start or a rolling curve, plus r. size: the size of a rolling
+    curve, times 1 + r. rate: a drive's rate, or all rates of the start if nothing is driven, times 1 + r, or r / T if
+    zero.
     """
 
     kind: str
@@ -215,10 +216,10 @@ class MistakeTrial:
 class Sighting:
     """How a mistake was noticed.
 
-    `check`: the check of theory that only the wrong model fails, or "". `every`: the last number of steps per sample
-    that was tried. `changed`: whether the gate of change distinguishes wrong and right row at any step. `shift`: the
-    largest difference between errors of the wrong and the right model, in the errors' units. `noise`: the largest error
-    of the right model. The step with the smallest noise is used.
+    `check`: the check of theory that only the wrong model fails, or "". `every`: the number of steps per sample in the
+    last run. `changed`: whether the gate of change distinguishes wrong and right row at any step. `shift`: the largest
+    difference between errors of the wrong and the right model, in the errors' units. `noise`: the largest error of the
+    right model. The step with the smallest noise is used.
     """
 
     check: str = ""
@@ -255,8 +256,8 @@ def noticed(trials: Sequence[MistakeTrial]) -> tuple[Mapping[Mistake, Sighting],
 def sightings(trial: MistakeTrial, judge: Prediction) -> Mapping[Mistake, Sighting]:
     """The sighting of every mistake, or nothing if the engine can't build the scene.
 
-    Mistakes that are not noticed are run again at finer and finer steps. A wrong row is checked together with the wrong
-    rows of larger steps, as in a grid with a wrong engine.
+    Models with a mistake that is not noticed are run again at smaller steps. A wrong row is checked together with the
+    wrong rows of larger steps, as in a grid with a wrong engine.
     """
     scene, engine = trial.scene, trial.engine
     page = next(page for page in PAGES if scene.name in {member.name for member in page.scenes})

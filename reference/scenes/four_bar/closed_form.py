@@ -1,7 +1,7 @@
 """The closed form of a four-bar for many crank angles: angles, rates and accelerations.
 
-The triangles A B D and B C D on both sides of the diagonal B D are solved with differences that have no cancellation.
-`reference/scenes/derivations.md` defines the letters and derives the equations.
+The triangles A B D and B C D at the diagonal B D are solved without cancellation. `reference/scenes/derivations.md`
+defines the letters and derives the equations.
 """
 
 from __future__ import annotations
@@ -188,7 +188,7 @@ def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> 
 
 def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Array, Array]:
     """U and W; negative values within rounding are set to zero. Raises OutOfReach unless every triangle closes."""
-    if u.size and not min(float(np.min(u)), float(np.min(w))) >= 0:  # a NaN fails too
+    if u.size and not min(float(np.min(u)), float(np.min(w))) >= 0:  # NaN is refused too
         allowed = -ANGLE_ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
         bad = ~(np.minimum(u, w) >= allowed)
         if np.any(bad):
@@ -200,11 +200,11 @@ def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Arra
 
 
 def grashof(crank: float, coupler: float, rocker: float, ground: float) -> str:
-    """The Grashof class by name, from the shortest bar s, the longest l and the others p, q; lengths [m].
+    """The Grashof class by name, with the shortest bar s, the longest bar l and the remaining bars p, q [m].
 
     s + l > p + q: triple-rocker (no bar turns fully). s + l = p + q to rounding: change-point. s + l < p + q:
-    double-crank if the ground is shortest, double-rocker if the coupler is, crank-rocker if a side bar is; if the
-    rocker is shortest, it turns fully and the crank swings.
+    double-crank if the ground is the shortest bar, double-rocker if the coupler is the shortest bar, else crank-rocker.
+    If the rocker is the shortest bar, it turns fully and the crank swings.
     """
     bars = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     shortest, *_ = ranked = sorted(bars, key=bars.__getitem__)

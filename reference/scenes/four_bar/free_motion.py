@@ -1,8 +1,7 @@
 """The free four-bar with one coordinate along its configuration curve, which is regular also at crank limits.
 
-t is the tangent of the configuration curve in the space of (theta, beta, phi), (theta, beta, phi)' = u t, and the root
-w of twice the kinetic energy is integrated with the angles: see "A four-bar left to itself" in
-`reference/scenes/derivations.md`.
+The configuration curve in the space of (theta, beta, phi) has the tangent t, and (theta, beta, phi)' = u t. The root w
+of twice the kinetic energy is integrated with the angles. The derivation is in `reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations
@@ -48,7 +47,8 @@ class CurveMotion(Valid):
 
     @validated
     def start(self, theta: float, theta_dot: float, branch: Sign) -> Any:
-        """The state (theta, beta, phi, u) at a crank angle [rad] and rate [rad/s]; Unreachable, InvalidMechanism."""
+        """The state (theta, beta, phi, u) at a crank angle [rad] and crank rate [rad/s]; Unreachable,
+        InvalidMechanism."""
         beta, phi = self.four_bar.angles(theta, branch)
         angle = self._closed(np.array([theta, beta, phi], dtype=np.longdouble))
         along = self._direction(angle)[0]
@@ -137,7 +137,8 @@ class CurveMotion(Valid):
 
     @property
     def _bar_inertias(self) -> Any:
-        """The bars' inertias (3,) about their fixed ends, with the coupler's mass at the crank's end [kg m^2]."""
+        """The bars' inertias (3,) [kg m^2] about their fixed ends; the crank's inertia includes the coupler's mass at
+        the crank's end."""
         m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
         lengths = np.array(self.four_bar.lengths, dtype=np.longdouble)
         return lengths**2 * np.array([m1 / 3 + m2, m2 / 3, m3 / 3])

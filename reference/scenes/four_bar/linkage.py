@@ -1,8 +1,8 @@
 """The four-bar linkage in closed form: position, rates, accelerations, limits and forces (sample 18.15, 18.67-18.71).
 
 Angles [rad] from +x, counter-clockwise: theta of A -> B (crank), beta of B -> C (coupler), phi of D -> C (rocker, the
-chapter's "rod CD"). A is the origin, D anywhere else. `branch` is +1 for C left of the directed line B -> D, as in the
-chapter's figure, -1 for the other branch (assembly mode).
+chapter's "rod CD"). A is the origin, and D is any other point. `branch` (assembly mode) is +1 if C is left of the
+directed line B -> D, as in the chapter's figure, else -1.
 Forces are those of uniform bars, by Newton's and Euler's laws.
 """
 
@@ -25,13 +25,13 @@ from reference.scenes.four_bar.closed_form import Constants, Interval, Kinematic
 from reference.validators import of_shape
 
 Array = NDArray[np.float64]
-Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, of all bars or of crank, coupler and rocker
+Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, one number for all bars or three numbers
 
 
 class Forces(NamedTuple):
     """Pin forces (..., 2) [N] on each pin's second body, and the torque (...) [N m] on the crank from the ground.
 
-    A: ground on crank; B: crank on coupler; C: coupler on rocker; D: ground on rocker.
+    A is from ground to crank, B from crank to coupler, C from coupler to rocker, D from ground to rocker.
     """
 
     A: Any
@@ -59,7 +59,7 @@ def bar_forces(
     """Forces in a known motion of uniform bars.
 
     lengths [m]; density [kg/m] of all bars or of crank, coupler and rocker; gravity [m/s^2]. Angles, rates and
-    accelerations are those of crank, coupler and rocker (theta, beta, phi); they broadcast.
+    accelerations of crank, coupler and rocker (theta, beta, phi) broadcast.
     """
     masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
     falling = complex(*gravity)
@@ -95,12 +95,13 @@ def _cross(first: Any, second: Any) -> Any:
     return (np.conj(first) * second).imag
 
 
-# The chapter's pseudocode, which integrates the printed rates, is a method under test and no reference. It does not
-# correct the closure of the loop, so errors of the angles accumulate. With the default tolerance of common packages
-# (rtol 1e-3) the error of the coupler's angle is 0.02 rad after one revolution and 1 rad after a hundred.
+# The chapter's pseudocode, which integrates the printed rates, is a method under test and no reference. The method does
+# not correct the closure of the loop, so errors of the angles accumulate. With the default tolerance of common packages
+# (rtol 1e-3) the coupler's angle has an error of 0.02 rad after one revolution and of 1 rad after a hundred
+# revolutions.
 
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
-# The nodes of the stages of methods with a fixed step, as fractions of the step.
+# The stages' nodes, as fractions of the step, for methods with a fixed step.
 FIXED_STEP_NODES = {"euler": (0.0,), "rk4": (0.0, 0.5, 0.5, 1.0)}
 Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA"]
 
@@ -327,9 +328,9 @@ class FourBar(Valid):
     ) -> Forces:
         """Pin forces A, B, C, D (..., 2) [N] and the crank's torque (...) [N m] in this motion of uniform bars.
 
-        density [kg/m], one number or three (crank, coupler, rocker); gravity [m/s^2]. A pin's force acts on its second
-        body: A ground on crank, B crank on coupler, C coupler on rocker, D ground on rocker. The torque acts on the
-        crank from the ground. Forces are not finite at a crank limit.
+        density [kg/m], one number or three (crank, coupler, rocker); gravity [m/s^2]. A is the ground's force on the
+        crank, B the crank's on the coupler, C the coupler's on the rocker, and D the ground's on the rocker. Forces are
+        not finite at a crank limit.
         """
         motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
         return bar_forces(

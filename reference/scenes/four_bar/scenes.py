@@ -29,8 +29,8 @@ Array = NDArray[np.float64]
 class FourBarScene(Scene):
     """Uniform bars as bodies "crank", "coupler", "rocker", pins "A", "B", "C", "D" between them in that order.
 
-    Body frames have their x axis along the bar (A -> B, B -> C, D -> C) and their origin at its middle; body angles are
-    theta, beta, phi, not wrapped. Lengths and ground [m], start [rad], rate [rad/s], density [kg/m] (one or three
+    Body frames have the x axis along the bar (A -> B, B -> C, D -> C) and the origin at the bar's middle. Body angles
+    are theta, beta, phi, not wrapped. Lengths and ground [m], start [rad], rate [rad/s], density [kg/m] (one or three
     numbers), gravity [m/s^2]. Raises InvalidMechanism, and Unreachable for a start at which the loop can't close.
     """
 
@@ -60,7 +60,7 @@ class FourBarScene(Scene):
         return densities[0] * self.crank, densities[1] * self.coupler, densities[2] * self.rocker
 
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
-        """The sign of sin(phi - beta) (...,): +1 for C left of the directed line B -> D, as in the chapter's figure."""
+        """The sign of sin(phi - beta) (...,), which is +1 if C is left of the directed line B -> D."""
         angle = pose[..., 2]
         return np.sign(np.sin(angle[..., 2] - angle[..., 1])).astype(int)
 
@@ -97,7 +97,7 @@ class FourBarScene(Scene):
 
 @dataclass(frozen=True)
 class DrivenFourBar(FourBarScene):
-    """The chapter's sample in closed form: the crank turns at a constant rate for a number of `revolutions`.
+    """The chapter's sample, in which the crank turns at a constant rate for a number of `revolutions`.
 
     The linkage has no freedom, so errors of a stepping method don't grow, and the horizon is the duration. `motion`
     raises Unreachable if the crank can't turn that far.
@@ -204,7 +204,7 @@ class FreeFourBar(FourBarScene):
 
 @dataclass(frozen=True)
 class SpinningFourBar(FreeFourBar):
-    """The free linkage with a crank rate at which the inertia of its bars dominates gravity."""
+    """The free linkage with a crank rate at which the bars' inertia dominates gravity."""
 
     name: ClassVar[str] = "spinning_four_bar"
 
@@ -218,10 +218,10 @@ IN_LINE = 1e-6
 
 @dataclass(frozen=True)
 class Parallelogram(DrivenFourBar):
-    """A parallelogram linkage: twice a revolution all bars are in line.
+    """A parallelogram linkage, whose bars are in line twice a revolution.
 
-    From these positions the bars can move on parallel or crossed. The reference motion is smooth: its coupler is always
-    parallel to the ground. The `branch` is not constant, since C passes from one side of B -> D to the other.
+    From these positions the bars can move on parallel or crossed. The reference motion is smooth, with a coupler that
+    is always parallel to the ground. The `branch` is not constant, since C passes from one side of B -> D to the other.
     """
 
     name: ClassVar[str] = "parallelogram"
@@ -277,7 +277,7 @@ class OverdrivenFourBar(DrivenFourBar):
     revolutions: Positive = 0.5
 
     def _motion(self, times: Array) -> Trajectory:
-        """Raises Unreachable after the stopping time, also for crank angles that the loop could reach again."""
+        """Times after the stopping time raise Unreachable, also for crank angles that the loop could reach again."""
         motion = super()._motion(times)
         late = times[times > self.stopping_time * (1 + 1e-12)]
         if late.size:
@@ -289,7 +289,7 @@ class OverdrivenFourBar(DrivenFourBar):
 
     @property
     def stopping_time(self) -> float:
-        """The time at which the crank meets its limit [s]; infinite if it never does."""
+        """The time [s] at which the crank meets its limit, or infinity if it never meets its limit."""
         limits = self.four_bar.crank_limits()
         if limits is None:
             return math.inf

@@ -1,10 +1,10 @@
 """The motion of a chain of N links; one banded system gives the joint forces at the cost O(N).
 
-Angles are absolute, from the downward vertical, counter-clockwise. Link i has its upper end at joint i; the half-vector
-h = (l/2)(sin, -cos) leads from the upper end to the centre of mass, and from the centre of mass to the lower end. F_i
-is the force of joint i on link i. The laws of Newton and Euler, m a = F_i - F_(i+1) + m g and I angle'' = -h x (F_i +
-F_(i+1)), and equal accelerations of two links at their joint give a block-tridiagonal, symmetric, positive definite
-system for the forces: the matrix is J M^-1 J^T of the chain.
+Angles are from the downward vertical, counter-clockwise. Link i has its upper end at joint i; the half-vector h =
+(l/2)(sin, -cos) leads from the upper end to the centre of mass, and from the centre of mass to the lower end. F_i is
+the force of joint i on link i. The laws of Newton and Euler are m a = F_i - F_(i+1) + m g and I angle'' = -h x (F_i +
+F_(i+1)). Two links have equal accelerations at their joint. So the forces have a block-tridiagonal, symmetric, positive
+definite system with the matrix J M^-1 J^T of the chain.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ class Chain(Valid):
         near, far = light + outer, outer - light
         diagonal = near.copy()
         diagonal[..., 1:, :, :] += near[..., :-1, :, :]
-        banded = np.zeros((4, *leading, links, 2))  # upper form: row 3 is the diagonal
+        banded = np.zeros((4, *leading, links, 2))  # upper form, with the diagonal in row 3
         banded[3, ..., 0], banded[3, ..., 1] = diagonal[..., 0, 0], diagonal[..., 1, 1]
         banded[2, ..., 1] = diagonal[..., 0, 1]
         banded[2, ..., 1:, 0] = far[..., :-1, 1, 0]
@@ -225,7 +225,7 @@ class Chain(Valid):
 
     @cached_readonly
     def inertia_matrix(self) -> Array:
-        """The constants M_ij of the kinetic energy sum M_ij cos(angle_i - angle_j) rate_i rate_j / 2 (links, links).
+        """M_ij (links, links) in the kinetic energy, the sum of M_ij cos(angle_i - angle_j) rate_i rate_j / 2.
 
         Raises InvalidMechanism if the matrix takes more than checks.LARGEST_ARRAY.
         """
@@ -239,13 +239,13 @@ class Chain(Valid):
 
     @cached_readonly
     def stiffness(self) -> Array:
-        """The weights K_i of the potential energy -sum K_i cos(angle_i) (links,) [N m]."""
+        """K_i (links,) [N m] in the potential energy, minus the sum of K_i cos(angle_i)."""
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
         return self.gravity * self._length * (self._mass / 2 + below)
 
     def modes(self) -> tuple[Array, Array]:
-        """Small oscillations about hanging: frequencies (links,) [rad/s] ascending, and shapes (links, modes) of
-        angles.
+        """Frequencies (links,) [rad/s], ascending, and shapes (links, modes) of angles of small oscillations about
+        hanging.
         """
         squares, shapes = eigh(np.diag(self.stiffness), self.inertia_matrix)
         return np.sqrt(squares), shapes

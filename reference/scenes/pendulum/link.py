@@ -1,7 +1,7 @@
 """Exact motion of one link under gravity (swinging, whirling or on the separatrix) and of the point pendulum.
 
-angle'' = -f^2 sin(angle), the angle from the downward vertical, counter-clockwise. With s = sin(angle/2) and p =
-rate/(2f) the energy is s^2 + p^2 = k^2, and (Whittaker, Analytical Dynamics, 44)
+The angle from the downward vertical, counter-clockwise, satisfies angle'' = -f^2 sin(angle). With s = sin(angle/2) and
+p = rate/(2f) the energy is s^2 + p^2 = k^2, and (Whittaker, Analytical Dynamics, 44)
 
     k < 1, swinging:  sin(angle/2) = k sn(f t + c, k),  rate = 2 f k cn,
     k > 1, whirling:  angle/2 = am(k f t + c, 1/k),     rate = 2 f k dn,
@@ -33,14 +33,14 @@ Array = NDArray[np.float64]
 # is the arithmetic-geometric mean (R. Bulirsch, "Numerical calculation of elliptic integrals and elliptic functions",
 # Numerische Mathematik 7 (1965) 78-90).
 
-# Relative difference of two iterates of the mean at which the iteration ends. The convergence is quadratic, so that the
-# relative error is then the square of this number.
+# Relative difference of two numbers at which the iteration of their mean ends. The convergence is quadratic, so that
+# the relative error is then the square of this number.
 HALF_PRECISION = 1e-9
 
 
 def quarter_period(complement: float) -> float:
-    """K [1], the complete integral of the first kind, for 0 <= n <= 1; it is infinite for n = 0."""
-    # The function of `incomplete` is used, so that the start rate of a body released from rest is exactly zero.
+    """K [1], the complete integral of the first kind, for 0 <= n <= 1; infinite for n = 0."""
+    # `incomplete` uses the same function, so that the start rate of a body released from rest is exactly zero.
     return float(elliprf(0.0, complement, 1.0))
 
 
@@ -110,7 +110,7 @@ def _first_quarter(argument: Array, complement: float) -> tuple[Array, Array, Ar
 
 @dataclass(frozen=True)
 class Pendulum(Valid):
-    """The exact motion from any start.
+    """The exact motion of a pendulum from any start.
 
     `frequency` f [rad/s] of small swings, `angle` [rad] and `rate` [rad/s] at t = 0. The error of the angle is a few
     1e-16 (1 + f t), except near the separatrix. Near the separatrix the motion depends on 1 - k^2, which a rounded
@@ -163,7 +163,7 @@ class Pendulum(Valid):
 
     @cached_property
     def period(self) -> float:
-        """The period of a swing, or the time of a whole turn [s]; infinite on the separatrix."""
+        """The period of a swing or the time of a whole turn [s], which is infinite on the separatrix."""
         speed, _, complement = self._elliptic
         return (2 if self.excess > 0 else 4) * quarter_period(complement) / speed
 

@@ -178,6 +178,6 @@ class SpinningRing(PlacedScene):
         half = self.length / 2
         joints = tuple(
             Pin(f"joint {i + 1}", bodies[i - 1].name, bodies[i].name, (half, 0.0), (-half, 0.0))
-            for i in [*range(1, self.links), 0]  # the joint that closes the ring is the last
+            for i in [*range(1, self.links), 0]  # the last joint closes the ring
         )
         return Mechanism(bodies, joints)

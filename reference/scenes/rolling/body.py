@@ -121,7 +121,7 @@ class RollingBody(Valid):
         return tangent, normal
 
     def _forces(self, t: ArrayLike) -> tuple[Array, Array, Array]:
-        """`forces`, and the sum (times,) of the absolute values of their terms [N]."""
+        """The `forces`, and the sum (times,) of the absolute values of the terms in the forces [N]."""
         theta, rate = self.states(t)
         contact = self.rolling.contact(theta)
         turning = self._angular_acceleration(contact, rate)

@@ -1,4 +1,4 @@
-"""Two congruent elliptic gears pinned at foci: rolling between two moving bodies, in closed form."""
+"""The closed form of two congruent elliptic gears that are pinned at foci and roll on each other."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class EllipticGears(Scene):
     """The first gear turns at a constant rate about its focus at the origin; the second gear turns about its focus at
     (2a, 0).
 
-    The sum of the distances from the contact to the two pins is always 2a, so the contact is on the line of the pins,
-    and tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2). The ratio of the rates varies between (1 + e) / (1 - e)
-    and its inverse. Gears are uniform discs, described at their centres.
+    The distances from the contact to the two pins add up to 2a, so the contact is on the line of the pins. The angles
+    satisfy tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2). The ratio of the rates varies between (1 + e) / (1 -
+    e) and its inverse. Gears are uniform discs, described at their centres.
 
     The motion does not determine the forces along the line of the pins, since the pins also fix the distance of the
     gears. The reactions of these rows are NaN.

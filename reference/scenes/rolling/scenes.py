@@ -55,7 +55,7 @@ class RollingScene(Scene):
     @property
     @abstractmethod
     def inertia(self) -> float:
-        """kg m^2 about the centre of mass."""
+        """Inertia about the centre of mass [kg m^2]."""
 
     @property
     def motion_law(self) -> RollingBody:
@@ -302,8 +302,8 @@ class SquareOnCatenaries(RollingScene):
     def corner(self) -> float:
         """The time [s] at which the corner is reached, after an eighth of a turn.
 
-        The centre moves on a level line, so the kinetic energy M(theta) theta'^2 / 2 is constant, with
-        M = inertia + mass r^2 and, for this arch, r = side / (2 cos theta).
+        The centre moves on a level line, so the kinetic energy M(theta) theta'^2 / 2 is constant. Here M = inertia +
+        mass r^2, and r = side / (2 cos theta) for this arch.
         """
 
         def mass(theta: float) -> float:

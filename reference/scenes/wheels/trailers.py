@@ -33,7 +33,7 @@ class Tow(Valid):
 
     start: x, y [m] and direction of travel [rad] of the hitch. radius: radius R [m] of the circle, which is positive to
     the left, negative to the right and infinite for a straight line. angle: psi [rad] at the start, which is 0 behind
-    the hitch and +-pi ahead of the hitch. The value +-math.pi means exactly this unstable equilibrium. Raises
+    the hitch and +-pi ahead of the hitch. The values +-math.pi are exactly the unstable equilibrium. Raises
     InvalidMechanism for a length that is not positive, a radius of 0 or NaN, or an angle beyond +-pi.
     """
 
@@ -49,7 +49,7 @@ class Tow(Valid):
 
     @cached_property
     def _discriminant(self) -> float:
-        """1 - (L/R)^2, computed without cancellation at R = L."""
+        """1 - (L/R)^2, without cancellation near R = L."""
         if math.isinf(self.radius):
             return 1.0
         ratio = self.length / abs(self.radius)
@@ -63,7 +63,7 @@ class Tow(Valid):
 
     @validated
     def relative_angle(self, distance: ArrayLike) -> Array:
-        """psi [rad, not wrapped] after the hitch has moved by the distance s (...) [m], which is negative backwards."""
+        """psi [rad, not wrapped] after the hitch has moved by the distance s (...) [m]; backwards s is negative."""
         distance = np.asarray(distance, dtype=float)
         across, along = self._half_angle_vector(distance)
         # The angle of (q, p) is psi / 2, and it is monotonic. It is always below pi if the discriminant is not
@@ -162,7 +162,7 @@ class Convoy:
 
     @property
     def bends(self) -> Array:
-        """Joint angles theta_trailer - theta_before (times, trailers) [rad]."""
+        """Joint angles (times, trailers) [rad]: a trailer's heading minus the heading of the towing vehicle."""
         return np.diff(self.pose[:, :, 2], axis=1)
 
 

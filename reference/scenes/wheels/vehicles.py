@@ -1,8 +1,8 @@
 """Coasting vehicles: a car with locked steering and a trailer, and a cart on free casters.
 
-The car has one freedom of velocity, its rear axle's speed v along a circle, so the energy M(s) v^2/2 gives the speed at
-the distance s. The trailer is a towed drawbar (`trailers.Tow`) whose hitch moves on a circle. The function t(s) = int
-sqrt(M(s)/M(0)) ds / v(0) is inverted, and no equation of motion is solved.
+The car has one freedom of velocity, the speed v of its rear axle along a circle. The energy M(s) v^2/2 gives the speed
+at the distance s. The trailer is a towed drawbar (`trailers.Tow`) whose hitch moves on a circle. The function t(s) =
+int sqrt(M(s)/M(0)) ds / v(0) is inverted, and no equation of motion is solved.
 
 A caster is a drawbar that its kingpin tows, and swings round in reverse. The wheel is `trail` c behind the kingpin. The
 kingpin is at (x, y) from the middle of the rear axle, which has the speed u and the turning rate w; With the caster's
@@ -94,7 +94,7 @@ class CarAndTrailer(Scene):
         return np.stack([self.pose[2] + self.curvature * way, tow.heading(pace * way) + turns], axis=-1)
 
     def _per_way(self, headings: NDArray[Any]) -> NDArray[Any]:
-        """Twists for a speed of 1 (..., 2 bodies, 3), analytic in the headings."""
+        """Twists (..., 2 bodies, 3) at a speed of 1 m/s, analytic in the headings."""
         (car, trailer), (car_centre, trailer_centre) = np.moveaxis(headings, -1, 0), self.centres
         speed, turning = towed(1.0, self.curvature, car - trailer, self.hitch, self.length)
         out = []
@@ -112,7 +112,7 @@ class CarAndTrailer(Scene):
 
     @validated
     def apparent_mass(self, way: ArrayLike) -> Array:
-        """M(s) [kg]: twice the kinetic energy for a speed of 1 m/s of the rear axle."""
+        """M(s) [kg], which is twice the kinetic energy at a speed of 1 m/s of the rear axle."""
         per_way = self._per_way(self._headings(np.asarray(way, dtype=float)))
         return np.sum(self._weights * per_way**2, axis=(-2, -1))
 
@@ -124,7 +124,7 @@ class CarAndTrailer(Scene):
         return Antiderivative(lambda r: np.sqrt(self.apparent_mass(sign * r) / first), shortest)
 
     def _way(self, times: Array) -> Array:
-        """The rear axle's distance s (times,) [m], negative backwards."""
+        """The rear axle's distance s (times,) [m]; backwards s is negative."""
         sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         goal = abs(self.speed) * times
 
@@ -154,7 +154,7 @@ class CarAndTrailer(Scene):
         """Poses, twists and accelerations (times, 2, 3)."""
         headings = self._headings(way)
         per_way = self._per_way(headings)
-        turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # the rates of the headings per metre of the path
+        turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # rates of the headings per metre
         bending = np.imag(self._per_way(turning)) / COMPLEX_STEP
         mass = np.sum(self._weights * per_way**2, axis=(-2, -1))
         speed_rate = -np.sum(self._weights * per_way * bending, axis=(-2, -1)) / mass * speed**2
@@ -189,7 +189,8 @@ class Casters(Valid):
 
     @validated
     def turning_rates(self, angles: Complexes, speed: Complexes, turning_rate: Complexes) -> Any:
-        """The casters' rates in the world w + beta' (..., casters) [rad/s] at angles beta (..., casters) [rad]."""
+        """The casters' rotation rates w + beta' (..., casters) [rad/s] in the world, at angles beta (..., casters)
+        [rad]."""
         x, y = np.array(self.places, dtype=float).T
         speed, turning_rate = np.asarray(speed)[..., None], np.asarray(turning_rate)[..., None]
         return (x * turning_rate * np.cos(angles) - (speed - y * turning_rate) * np.sin(angles)) / self.trail
@@ -212,7 +213,7 @@ class Casters(Valid):
         """Angles beta (times, casters) [rad, not wrapped] from `angles` at t = 0, and a bound (times,) on their error.
 
         speed [m/s] and turning_rate [rad/s] of the cart are numbers or functions of time. In reverse the caster swings
-        round to pi from a small angle; an angle of exactly zero is an unstable equilibrium.
+        round from a small angle to pi; an angle of exactly zero is an unstable equilibrium.
         """
         times = sample_times("casters", t)
 

@@ -21,8 +21,8 @@ from tests.tools.mutants.mistakes import BadList, Mutation, read_mistakes
 EXCLUDED_FROM_COPY = (".git", ".venv*", "__pycache__", "*.egg-info", ".*_cache", "*.sqlite*", "crosscheck-results")
 PYTEST_OPTIONS = ("-q", "-x", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider")
 FAST_TESTS = ("-m", "not slow and not crosscheck")
-NO_TEST = (4, 5)  # Exit statuses of pytest without a collected test.
-TEST_TIMEOUT = 300.0  # s, for one run of pytest.
+NO_TEST = (4, 5)  # Exit statuses of pytest if no test is collected.
+TEST_TIMEOUT = 300.0  # Timeout [s] of one run of pytest.
 
 
 def copy_tree(folder: Path) -> Path:
@@ -48,7 +48,7 @@ def run_tests(tree: Path, tests: str) -> tuple[bool, str]:
 
 
 def run_mistake(tree: Path, mistake: Mutation, test: str) -> tuple[bool, str]:
-    """Make the mistake in the tree, run the test or the file of tests, and restore the source."""
+    """Make the mistake in the tree, run the entry's test or file of tests, and restore the source."""
     if not test:
         return False, "no test is named"
     file, wrong = mistake.locate()
