@@ -56,7 +56,7 @@ def short_repr(value: Any) -> str:
     """The repr of a value in one short line."""
     try:
         text = " ".join(repr(value).split())
-    except Exception:  # an int has too many digits, or the object can't be printed
+    except Exception:  # an int with too many digits, or an object that can't be printed
         text = f"something of the type {type(value).__name__}"
     return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 3]}..."
 
@@ -129,7 +129,7 @@ def validated(function: Function) -> Function:
         named = {name: take_argument(name, value) for name, value in named.items()}
         try:
             return function(*plain, **named)
-        except ArithmeticError as reason:  # such as a division by zero, an overflow or a root that is not found
+        except ArithmeticError as reason:  # for example division by zero or overflow
             if isinstance(reason, InvalidMechanism):
                 raise
             raise InvalidMechanism(

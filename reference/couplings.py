@@ -48,7 +48,7 @@ class Term(Valid):
         return self.factor * (np.cos(line) * x + np.sin(line) * y)
 
     def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
-        """`value` with one more axis (..., 1)."""
+        """The `value` of the term with one more axis (..., 1)."""
         return self.value(first, second)[..., None]
 
     def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:

@@ -23,7 +23,8 @@ class Element(Valid):
 
     `stackable`: several elements of the class can be evaluated as one element with arrays in the numeric fields.
     `acts_along_line`: the element acts along the line between its two points.
-    `unit_exponents`: field names to the exponents of mass and time in the field's unit, which are 0 if absent.
+    `unit_exponents`: field names to the exponents of mass and time in the field's unit. Exponents of other fields are
+    0.
     """
 
     stackable: ClassVar[bool] = True
@@ -74,7 +75,7 @@ class JointElement(Element):
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """Lengths of the joint [m] from which, among others, the mechanism's length is computed."""
+        """Lengths of the joint [m] that are used for the mechanism's length."""
         return ()
 
     @property

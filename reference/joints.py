@@ -249,7 +249,8 @@ class Gear(_JointOfTwo):
 
 @dataclass(frozen=True)
 class Weld(_JointOfTwo):
-    """A rigid connection at two points, with the angle `angle` [rad] of the second body relative to the first.
+    """A rigid connection: a point of the first body coincides with a point of the second body, and `angle` [rad] is the
+    second body's angle relative to the first body.
 
     The relative angle is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus
     velocity of the first point, x then y, and omega of the second body minus omega of the first body. Reaction: force

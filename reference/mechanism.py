@@ -198,12 +198,12 @@ class Mechanism(Valid):
         gravity: Annotated[Numbers, of_shape(2)] | None = None,
         twist: Reals | None = None,
     ) -> NDArray[np.float64]:
-        """The joints' reactions (..., rows) [N, N m] from M a = f + J^T reaction with the force f of gravity and
-        forces.
+        """The joints' reactions (..., rows) [N, N m] from M a = f + J^T reaction, where f is gravity and force
+        elements.
 
         pose, acceleration and twist are (..., bodies, 3); only dampers need the twist. By Newton's law an engine with
-        this motion has applied these reactions. inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2] default
-        to the mechanism's. If they are the engine's, a wrong mass in the engine changes the reactions even if the
+        this motion has applied these reactions. inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2] are the
+        mechanism's by default. With the engine's inertias a wrong mass in the engine changes the reactions even if the
         motion is prescribed. NaN stands for an unknown inertia. For dependent rows the minimum-norm reactions are
         returned.
         """
@@ -241,8 +241,8 @@ class Mechanism(Valid):
     def degrees_of_freedom(self, pose: Annotated[Floats, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:
         """The numbers of configuration and velocity freedoms from the rank of the rows at a pose, by default the start.
 
-        A skate removes a freedom of velocity and none of configuration; a drive removes one of each (box 18.3). The
-        cost is O(bodies^3). Raises InvalidMechanism if the rows take more than LARGEST_RANK.
+        A skate removes only a freedom of velocity; a drive removes a freedom of velocity and a freedom of configuration
+        (box 18.3). The cost is O(bodies^3). Raises InvalidMechanism if the rows take more than LARGEST_RANK.
         """
         return self._freedoms_at_start if pose is None else self._freedoms(pose)
 
@@ -283,7 +283,7 @@ PLACEMENT_ROUNDINGS = 64
 
 
 def refuse_a_bad_start(mechanism: Mechanism) -> None:
-    """Raise InvalidMechanism, which names the row, body or force, if no engine can begin with the start."""
+    """Raise InvalidMechanism if no engine can begin with the start; the message names the row, body or force."""
     with np.errstate(over="ignore"):
         energies = 0.5 * np.sum(mechanism.inertias * mechanism.twist**2, axis=-1)
     for body, energy in zip(mechanism.bodies, energies.tolist(), strict=True):

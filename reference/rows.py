@@ -1,8 +1,8 @@
 """Evaluation and rank of a mechanism's velocity rows J, and the reactions along the rows.
 
-The magnitude of a row depends on the unit of length, so ranks are computed for rows without units. The condition number
-of J M^-1 J^T is the square of that of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without
-that product. For many rows the product is used, since it has a narrow band; one step of refinement follows.
+The magnitude of a row depends on the unit of length, so ranks are computed for rows without units. The product J M^-1
+J^T squares the condition number of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without the
+product. For many rows the product is used, since it has a narrow band; one step of refinement follows.
 """
 
 from __future__ import annotations
@@ -76,9 +76,9 @@ def solve_symmetric(matrix: Array, right: Array) -> Array:
 def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: float) -> Array:
     """Forces (..., rows) with M excess = rows^T forces: least squares with the weights M^(-1/2).
 
-    rows (..., rows, 3 bodies) at a pose; inertias (3 bodies,), the diagonal of M; excess (..., 3 bodies), acceleration
-    minus free fall. If rows are dependent, the minimum-norm forces are returned, where `size` (rows,) [N or N m] is the
-    unit of each row. The result is NaN if a number is not finite.
+    rows (..., rows, 3 bodies) are J at a pose; inertias (3 bodies,) are the diagonal of M; excess (..., 3 bodies) is
+    the acceleration minus free fall. If rows are dependent, the minimum-norm forces are returned, where `size` (rows,)
+    [N or N m] is the unit of each row. The result is NaN if a number is not finite.
 
     The columns of M^(-1/2) rows^T are scaled to equal length, so that rows of light and heavy bodies have the same
     weight. Whether rows are dependent is decided by `rank` without the masses, since a large ratio of masses can make
@@ -98,7 +98,7 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
     inverse = np.where(small, 0.0, 1 / np.where(small, 1.0, singular))
     target = np.where(finite[..., None], excess, 0.0) * root
     solution = scale * _times(np.swapaxes(right, -1, -2), inverse * _times(np.swapaxes(left, -1, -2), target))
-    missing = rows.shape[-2] - singular.shape[-1]  # if positive, rows are always dependent
+    missing = rows.shape[-2] - singular.shape[-1]  # if positive, rows are dependent
     if missing > 0 or np.any(small & finite[..., None]):
         solution = _smallest(solution, scale, matrix, size)
     return np.where(finite[..., None], solution, np.nan)
@@ -130,7 +130,7 @@ class JointGroup:
     joint: each numeric field is an array with the joints along its first axis. first, second (joints,): indices of the
     bodies; the ground has the index after the last body. rows (joints, size): indices of the rows in the mechanism.
     adds: the group is a second or later term of a coupling, whose row is a sum over groups. offset: constant of a
-    coupling that is subtracted from the gap of its first term.
+    coupling, which the gap of the first term subtracts.
     """
 
     joint: Any

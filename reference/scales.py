@@ -11,8 +11,8 @@ from reference.forces import ForceElement
 from reference.joints import Body, Joint
 from reference.plane import components
 
-# Largest distance of points on one body that counts as the rounding error of a contact at the centre of mass, relative
-# to a radius of curvature.
+# If a contact is at the centre of mass, distances below this fraction of the radius of curvature count as rounding
+# errors.
 ROUNDED = 1e-12
 
 
@@ -20,7 +20,7 @@ def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequen
     """The mechanism's length [m]: the largest of the rods' lengths and the distances between points of one body.
 
     The points are the centre of mass, the points at which joints and forces act, and the point that defines a slot's
-    line. For a force along a slot's line they are the slot's points. If the points of each body coincide, the result is
+    line. A force along a slot's line counts with the slot's points. If the points of each body coincide, the result is
     the largest spring length or radius of curvature of a rolling contact, else 1.
     """
     by_name = {body.name: body for body in bodies}
@@ -52,9 +52,9 @@ def time_scale(
 ) -> float:
     """The time of one radian of the mechanism's fastest motion [s], or 1 for a mechanism at rest without forces.
 
-    Motions are compared by these rates: a body's rotation rate, a drive's rate, speed over length, the pendulum
-    frequency sqrt(g / length), and the rate of the motion under each force alone. That is a spring's frequency, a
-    damper's rate of decay, or sqrt(a / length) for a constant acceleration a.
+    The rates of motions are a body's rotation rate, a drive's rate, speed over length, the pendulum frequency sqrt(g /
+    length), and the rate under each force alone. The rate under a force is a spring's frequency, a damper's rate of
+    decay, or sqrt(a / length) for a constant acceleration a.
     """
     by_name = {body.name: body for body in bodies}
     rates = [math.sqrt(math.hypot(*gravity) / length)]

@@ -82,7 +82,7 @@ class Scene(Valid, ABC):
         super().__post_init__()
         field_names = {field.name for field in fields(self)}  # type: ignore[arg-type]
         for name, annotation in TIME_ANNOTATIONS:
-            # This checks a class attribute that is no field; a property is not evaluated.
+            # Class attributes that are no fields are checked here; properties are not evaluated.
             value = inspect.getattr_static(self, name)
             if name not in field_names and not hasattr(value, "__get__"):
                 validate(self._owner(), name, value, annotation)
@@ -256,7 +256,7 @@ def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
 
 
 def with_distinct_names(scenes: tuple[Scene, ...]) -> tuple[Scene, ...]:
-    """The scenes, in which equal names are extended by the numbers that differ from the defaults."""
+    """The scenes; a name that occurs twice is extended by the numbers that differ from the defaults."""
     names = [scene.name for scene in scenes]
     return tuple(
         named(_replaced(scene, {}), _name(scene.name, _changed_fields(scene)))

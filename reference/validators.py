@@ -212,7 +212,8 @@ def _either(validators: Sequence[Validator]) -> Validator:
 
 
 def _instance(annotation: type) -> Validator:
-    # All objects of a dataclass satisfy a protocol if one object does. A check with twenty members takes 50 us.
+    # If one object of a dataclass satisfies a protocol, all its objects do. A check of a protocol with twenty members
+    # takes 50 us.
     fitting: set[type] = set()
 
     def validate(value: Any) -> Any:

@@ -36,7 +36,7 @@ def _stored() -> dict[tuple[str, ...], list[dict[str, str]]]:
 
 
 def committed_rows(cells: Iterable[Cell]) -> dict[Cell, Measurement]:
-    """Cells to their committed rows, for cells with a row.
+    """A dictionary from cells to committed rows, without cells that have no row.
 
     Cells that differ only in the scene's numbers or the engine's settings are distinguished by digests. If the settings
     have changed since the publication, a row with equal numbers is used if it is the only row.

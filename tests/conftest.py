@@ -10,13 +10,13 @@ import pytest
 
 pytest_plugins = ["pytester"]
 
-# Tests that a shell starts in the background ignore Ctrl-C, and their programs would inherit this.
+# Tests that a shell starts in the background ignore Ctrl-C, and so would the programs that the tests start.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 os.environ.pop("COLUMNS", None)  # tables depend on the width of the user's window
 
-# The longest test files. They are run first, so that the workers end at about the same time.
+# The longest test files. Long files are run first, so that the workers end at about the same time.
 LONGEST_FILES = (
     *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
     *("promised", "matrix", "random", "scenes", "conformance"),
@@ -67,7 +67,7 @@ def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Workforce(1, in_process))
     monkeypatch.setattr(worker, "start_early", lambda *modules: None)
-    monkeypatch.setattr(supervisor, "supervise", in_process)  # for functions that are imported when a command is called
+    monkeypatch.setattr(supervisor, "supervise", in_process)  # functions that import it when they are called
     monkeypatch.setattr(walk, "supervise", in_process)
 
 

@@ -44,7 +44,8 @@ def coupled(*factors: float) -> Rows:
 
 
 def equalities(model: Any) -> list[Rows]:
-    """The rows of all equalities in a model of hinges and slides, which are connects or linear in joints or tendons."""
+    """The rows of all equalities of a model of hinges and slides. An equality is a connect, or linear in joints or
+    tendons."""
 
     def factors(equality: int) -> Array:
         row = np.zeros(model.nv)

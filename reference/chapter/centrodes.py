@@ -23,8 +23,8 @@ from reference.rolling.traced import FEWEST, STILL, Traced, spline
 from reference.trajectory import Trajectory
 from reference.validators import NOT_FINITE, from_to, of_shape
 
-# Smallest rotation rate, relative to the largest, at which the instant centre counts as finite. Its distance is then a
-# million times the size of the motion.
+# Smallest rotation rate, relative to the largest, at which the instant centre counts as finite. The centre's distance
+# is then a million times the size of the motion.
 SLOWEST = 1e-6
 
 Poses = Annotated[Array, of_shape("n", 3)]
@@ -211,7 +211,7 @@ def _assembled(pose: Array, space: Array, body: Array) -> Centrodes:
 
 
 def _halved(theta: Array, points: NDArray[np.float64]) -> float:
-    """The largest distance [m] of points from the curve without every second point, or NaN for few points."""
+    """The largest distance [m] of left-out points from the curve through every second point, or NaN for few points."""
     if len(theta) < 2 * FEWEST:
         return math.nan
     last = len(theta) - 1 + len(theta) % 2

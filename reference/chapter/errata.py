@@ -1,7 +1,7 @@
 """Formulas with errors in the chapter, as printed and as corrected, and computations that decide between them.
 
 The folder `reports/pages/errata/slips` has a document with a deciding script for each error. This module has the
-formulas that are decided by the motion of an engine.
+formulas for which an engine's motion decides.
 """
 
 from __future__ import annotations
@@ -153,7 +153,7 @@ def exchanged_in_j(bar: BarState) -> Array:
     return np.array([right(bar)[0], bar.length * second])
 
 
-# Number of the erratum to the bar (0 is OA, 1 is AB) and the wrong formula of its acceleration.
+# Number of the erratum to the bar (0 is OA, 1 is AB) and the wrong formula of the bar's acceleration.
 PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
     23: (0, omega_in_the_first_term),
     25: (1, omega_in_the_first_term),

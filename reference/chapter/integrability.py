@@ -34,7 +34,7 @@ Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., row
 CIRCLE_RADIUS = 0.03
 CIRCLE_SAMPLES = 8
 GROWTH_TOLERANCE = 1e-6
-# Ranks are compared at the pose and at NEIGHBOURS - 1 poses at this distance from it, since they must be constant.
+# Ranks must be equal at the pose and at NEIGHBOURS - 1 poses at this distance from the pose.
 NEIGHBOUR_DISTANCE = 0.1
 NEIGHBOURS = 4
 
@@ -72,7 +72,8 @@ def _neighbours(place: Place) -> list[Array]:
 
 @validated
 def is_integrable(rows: Rows, place: Place) -> bool:
-    """Whether dw_i(X_a, X_b) is zero at a place and near it. Raises InvalidMechanism if the rank changes there."""
+    """Whether dw_i(X_a, X_b) is zero at a place and in a neighbourhood. Raises InvalidMechanism if the rank changes
+    there."""
     places = _neighbours(place)
     ranks = {null_space(rows(near)).shape[1] for near in places}
     if len(ranks) > 1:
@@ -117,9 +118,10 @@ def _fields(rows: Rows, place: Place) -> list[Rows]:
 def growth(rows: Rows, place: Place) -> tuple[int, ...]:
     """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]] and so on at a place, until they no longer grow.
 
-    The first number counts velocity freedoms, the last number configuration freedoms: (1,) for a pinned body,
-    (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular: if a bracket vanishes at
-    this place only (a trailer at a right angle to its car), its further brackets are not counted.
+    The first number counts velocity freedoms, and the last number counts configuration freedoms. Examples are (1,) for
+    a pinned body,
+    (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular, since further brackets are
+    not counted if a bracket vanishes only at this place. A trailer at a right angle to its car is not regular.
     """
     generators = _fields(rows, np.asarray(place, dtype=float))
     basis = _extended_basis(np.zeros((len(place), 0)), [np.real(field(place)) for field in generators])
@@ -183,11 +185,11 @@ def mechanism_is_integrable(mechanism: Mechanism, pose: Pose | None = None) -> b
 
 @validated
 def freedoms_by_brackets(mechanism: Mechanism, pose: Pose | None = None) -> tuple[int, ...]:
-    """The `growth` of a mechanism's freedoms, time not counted: from velocity freedoms to configuration freedoms.
+    """The `growth` of a mechanism's freedoms from velocity freedoms to configuration freedoms; time is not counted.
 
     This is a check of `Mechanism.degrees_of_freedom`, since it does not use `holonomic`. A car with locked steering has
     one freedom of velocity and follows one curve, so its skates are integrable together. `degrees_of_freedom` counts
-    four freedoms of configuration for it, by the classes of its joints.
+    four freedoms of configuration for this car, by the classes of its joints.
     """
     dimensions = growth(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
     return tuple(dimension - 1 for dimension in dimensions)

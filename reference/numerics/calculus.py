@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# Number of points of a panel; they resolve an oscillation over about one radian to rounding.
+# Number of points of a panel, which resolve one radian of an oscillation to rounding.
 PANEL_POINTS = 24
-# The panel is halved unless this number of last coefficients of its series are zero to rounding.
+# Number of the last coefficients of a panel's series that must be zero to rounding; otherwise the panel is halved.
 TAIL = 4
 # Maximum number of halvings of a panel around a jump of the integrand. The panel is then shorter than rounding.
 MOST_HALVINGS = 46

@@ -1,10 +1,10 @@
 """Motions q'' = f(q, q') of a few angles by Gauss-Legendre collocation.
 
-A step, here called a window, has 24 stages; the polynomial through them represents the acceleration to rounding. It
-gives the motion at every time within the window without a discretisation error. The collocation equations are solved by
-fixed-point (Picard) iteration. An iteration calls f once with all nodes, at little more cost than a call with one
-state. For a fast and a slow oscillation, the method is seven times as fast as an explicit method of order 8 at the same
-tolerance.
+A step, here called a window, has 24 stages; the polynomial through them represents the acceleration to rounding. This
+polynomial gives the motion at every time within the window without a discretisation error. The collocation equations
+are solved by fixed-point (Picard) iteration. An iteration calls f once with all nodes, at little more cost than a call
+with one state. For a fast and a slow oscillation, the method is seven times as fast as an explicit method of order 8 at
+the same tolerance.
 
 States are in extended precision if numpy.longdouble has more digits than a double. In a fast oscillation the
 acceleration has an error of the angle's rounding times the square of the frequency. In double precision this would
@@ -36,7 +36,7 @@ COARSE_STAGES = 16
 # Allowed error of the polynomial within a window, ten times the rounding of a double. At the window's end the order is
 # twice as high and the error far below rounding.
 WINDOW_TOLERANCE = 3e-15
-# Length of the first window times the start's rate [rad], which is small for any motion.
+# Length of the first window times the rate at the start [rad]. This window is short for any motion.
 FIRST_WINDOW = 0.3
 # The next window is longer after at most FEW_ITERATIONS and shorter after more than MANY_ITERATIONS. After
 # MOST_ITERATIONS the window is repeated with half its length.
@@ -55,8 +55,8 @@ FEW_WINDOWS = 200
 class CollocationRule(NamedTuple):
     """Gauss's rule on a step of length 1.
 
-    weights (stages,); matrix (stages, stages) times slopes: increments at the stages; coefficients (stages, stages)
-    times slopes: Legendre coefficients.
+    weights (stages,); matrix (stages, stages) converts slopes to increments at the stages; coefficients (stages,
+    stages) converts slopes to Legendre coefficients.
     """
 
     weights: Extended
@@ -265,7 +265,7 @@ def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
 
 
 def _integrated(values: Extended) -> Extended:
-    """The integrals (n, times) of Legendre polynomials or their integrals (n + 1, times); the last degree is left out.
+    """The integrals (n, times) of Legendre polynomials (n + 1, times) or of their integrals, without the last degree.
 
     On a step of length 1 the integral of P_n is (P_(n+1) - P_(n-1)) / (4 n + 2), and the integral of P_0 is (P_1 + P_0)
     / 2.

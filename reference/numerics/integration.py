@@ -1,8 +1,8 @@
 """Integration of motions at a tight tolerance, with dense output of full order and a known error.
 
 The method is the explicit Runge-Kutta pair of order 8 by Dormand and Prince (Hairer, Norsett, Wanner, Solving Ordinary
-Differential Equations I, II.10). Its usual interpolant has order 7 only. Here one more step of order 8 gives the state
-at a time between two steps; all times are computed at once.
+Differential Equations I, II.10). The usual interpolant of this pair has order 7 only. Here an additional step of order
+8 gives the state at a time between two steps, for all times at once.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ STEP_TOLERANCE = 3e-14
 COARSER = 10.0
 # Maximum number of steps; a motion that needs more approaches a singularity.
 MAX_STEPS = 20_000
-# The first step, relative to the time in which the state changes by its value plus its unit. The value is small for any
-# motion, since a step may grow tenfold. SciPy's first step would depend on the unit of time.
+# The first step as a fraction of the time in which the state would change by its value plus its unit. The value is
+# small for any motion, since a step may grow tenfold. SciPy's first step would depend on the unit of time.
 FIRST_STEP = 1e-3
 # Number of steps after which the integration checks whether it can end. The integration stops if even steps LENGTHENED
 # times as long would exceed the maximum number of steps.
@@ -71,8 +71,8 @@ def integrate(
 ) -> Integrated:
     """Integrate from `start` (states,) at t = 0 to `until` [s].
 
-    The allowed error of a step is `tolerance` times |y| + `unit`. `unit` (states,) is 1 for angles; see
-    `units_of_motion` for rates. Raises IntegrationFailed if the step vanishes or a number is not finite.
+    The allowed error of a step is `tolerance` times |y| + `unit`. For angles `unit` (states,) is 1; `units_of_motion`
+    returns the units of rates. Raises IntegrationFailed if the step vanishes or a number is not finite.
     """
     state = np.asarray(start, dtype=float)
     units = np.broadcast_to(np.asarray(unit, dtype=float), state.shape)

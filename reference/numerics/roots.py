@@ -43,11 +43,12 @@ def solve_increasing(
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             following: NDArray[Any] = x + missing / slope
             middle = 0.5 * (low + high)
-        # Bisect unless the Newton step is much shorter than the last step, since such steps may oscillate for ever.
+        # If the Newton step is not much shorter than the last step, bisect, since Newton's method may oscillate for
+        # ever.
         shrinks = (np.abs(following - x) <= 0.75 * last_step) | ~np.isfinite(middle)
         newton = np.isfinite(following) & (following >= low) & (following <= high) & shrinks
         following = np.where(newton, following, middle)
-        # A bracket that is infinite on one side has no middle; double x in that direction.
+        # If one bound is infinite, there is no middle, and x takes a long step towards this bound.
         following = np.where(np.isfinite(following), following, x + np.sign(missing) * (np.abs(x) + scale))
         last_step = np.abs(following - x)
         x = following
@@ -62,12 +63,13 @@ Function = Callable[[Array], tuple[Array, Array]]
 
 # Degree of a Chebyshev series over one interval.
 SERIES_DEGREE = 32
-# Rounding of a few hundred operations, relative to the size of the terms. A negative value within it counts as zero.
+# Rounding of a few hundred operations, relative to the size of the terms. A negative value within this rounding counts
+# as zero.
 SUM_ROUNDING = 1e-13
 # Largest coefficient in the last quarter of a converged series, relative to the size of the terms.
 CONVERGED = 1e-12
-# If halving an interval reduces the last quarter of coefficients by less than this factor, these are noise or a jump.
-# For an analytic function the factor is 2^-24.
+# If halving an interval reduces the last quarter of coefficients by less than this factor, the cause is noise or a
+# jump. For an analytic function the factor is 2^-24.
 IMPROVES = 0.25
 
 _LOBATTO_POINTS = chebyshev.chebpts2(SERIES_DEGREE + 1)
@@ -136,9 +138,9 @@ def _pieces(function: Function, knots: Array) -> list[tuple[float, float, Array,
 
 
 def _crossing(begin: float, end: float, values: Array, series: Array, noise: float) -> tuple[float, float] | None:
-    """Two times around the first change of a series from above zero to below -noise, or None if it has no such change.
+    """Two times around the first change of a series from above zero to below -noise, or None without such a change.
 
-    If the series is nowhere above zero before that change, the first time is `begin`.
+    If the series is never above zero before it is below -noise, the first time is `begin`.
     """
     if values.min() >= -noise and series[0] - np.abs(series[1:]).sum() > 0:
         return None

@@ -1,7 +1,7 @@
 """Ellipses and smooth convex cams as boundaries that are described by arc length.
 
 The arc of an ellipse is an elliptic integral, continued over any number of turns. The support function of a cam is a
-Fourier series, and only its inverse of the arc has no closed form.
+Fourier series. All functions of a cam but the inverse of the arc have a closed form.
 """
 
 from __future__ import annotations

@@ -114,9 +114,9 @@ class ByArc(Curve):
 
 
 def along(arc: ArrayLike) -> Array:
-    """Return arcs or angles as an array of floats; raise InvalidMechanism for other types. NaN occurs in root
-    searches."""
-    if type(arc) is np.ndarray and arc.dtype == np.float64:  # saves time in root searches
+    """Return arcs or angles as an array of floats; raise InvalidMechanism for other types. NaN is allowed, since it
+    occurs in root searches."""
+    if type(arc) is np.ndarray and arc.dtype == np.float64:  # fast path for root searches
         return arc
     return validate("curve", "the place", arc, Numbers)
 

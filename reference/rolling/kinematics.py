@@ -133,8 +133,8 @@ class Rolling(Valid):
         circles = signed_circle(self.ground), signed_circle(self.body)
         if circles[0] is not None and circles[1] is not None:
             ground, body = circles[0][1], circles[1][1]
-            # The sum of the signed radii has no cancellation for a disc in a hole of nearly the same size, as angles
-            # would have.
+            # For a disc in a hole of nearly the same size, the sum of the signed radii has no cancellation, unlike
+            # angles.
             return self._body_start - rotation * (body * (ground / (ground + body)))
         low, high = self.limits
         slack = 1e-12 * (1 + abs(self.theta))

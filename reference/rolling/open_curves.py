@@ -35,7 +35,7 @@ class Parabola(Curve):
     def parameter(self, arc: ArrayLike) -> Array:
         """p = asinh(slope), with arc = focal (p + sinh(2p)/2)."""
         scaled = along(arc) / self.focal
-        # For small p, arc / focal is 2p. For large p it is exp(2p)/4, so a logarithm limits the guess.
+        # For small p, arc / focal is 2p. For large p, arc / focal is exp(2p)/4, so a logarithm limits the guess.
         guess = np.sign(scaled) * np.minimum(np.abs(scaled) / 2, np.log1p(2 * np.abs(scaled)))
         return solve_increasing(lambda q: (q + 0.5 * np.sinh(2 * q), 1 + np.cosh(2 * q)), scaled, guess, 1e-3)
 
@@ -138,7 +138,7 @@ class LogSpiral(Curve):
     def point_of(self, p: ArrayLike) -> Array:
         p = along(p)
         radius = self.radius * np.exp(self.growth * p)
-        turn = np.where(np.isfinite(p), p, 0.0)  # at the pole the radius is zero, and any angle will do
+        turn = np.where(np.isfinite(p), p, 0.0)  # at the pole the radius is zero, and the angle is arbitrary
         return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1)
 
     def angle_of(self, p: ArrayLike) -> Array:

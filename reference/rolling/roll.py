@@ -24,10 +24,10 @@ class Roll(BetweenTwo, JointElement):
     and `body` is in the frame of the second body, both from the centre of mass. The contact is a function of the
     relative rotation alone, so the joint is holonomic.
 
-    Rows: relative velocity at the contact along e_t, in which `ground` is traversed, then along e_n towards the
-    interior of the second body (see `reference.rolling.curves`). If the gap is zero, the rows are its derivatives.
-    Reactions on the second body [N]: friction along e_t, and the normal force along e_n, which is negative if the joint
-    pulls.
+    Rows: relative velocity at the contact along e_t, then along e_n. The direction e_t is the one in which `ground` is
+    traversed, and e_n points into the second body (see `reference.rolling.curves`). If the gap is zero, the rows are
+    the derivatives of the gap. Reactions on the second body [N]: friction along e_t, and the normal force along e_n,
+    which is negative if the joint pulls.
     """
 
     size: ClassVar[int] = 2

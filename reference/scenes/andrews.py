@@ -41,9 +41,9 @@ class Andrews(PlacedScene):
     """Seven bodies with `masses` [kg] and `inertias` [kg m^2] start from rest with the crank at `angle` [rad].
 
     Lengths [m] in the test set's letters are `crank` (rr, ra), `rod` (d, da), `bar` (ss, sa, sb), `spring_point` (sc,
-    sd), `upper` (zt, ta, tb), `upper_end` (e, ea), `lower` (u, ua, ub) and `lower_end` (zf, fa). In each field but
-    `spring_point` the length between two joints is first, and the position of the centre of mass follows. The spring
-    has `stiffness` [N/m] and `rest_length` [m]. The crank has a constant `torque` [N m]. There is no gravity. Raises
+    sd), `upper` (zt, ta, tb), `upper_end` (e, ea), `lower` (u, ua, ub) and `lower_end` (zf, fa). Each field but
+    `spring_point` has the length between two joints and then the position of the centre of mass. The spring has
+    `stiffness` [N/m] and `rest_length` [m]. The crank has a constant `torque` [N m]. There is no gravity. Raises
     InvalidMechanism if the bars can't be assembled at the start.
     """
 
@@ -78,12 +78,12 @@ class Andrews(PlacedScene):
 
     @property
     def samples(self) -> int:
-        """There are a hundred samples, since the crank rotates by up to half a radian in half a millisecond."""
+        """A hundred samples are needed, since the crank rotates by up to half a radian in half a millisecond."""
         return 100
 
     @property
     def pairs(self) -> tuple[Dyad, Dyad, Dyad]:
-        """The pair of bar and rod from B to the crank's end, and two pairs from A to P."""
+        """Pairs of bars: bar and rod from B to the crank's end, and two pairs from A to P."""
         firsts, seconds = (
             (self.bar[0], self.upper[0], self.lower[0]),
             (self.rod[0], self.upper_end[0], self.lower_end[0]),
@@ -133,7 +133,7 @@ class Andrews(PlacedScene):
         ends = {"O": Moving(*(0j * frames[0].value,) * 3)}
         ends["A"], ends["B"] = (ends["O"].shifted(complex(*pivot)) for pivot in (self.pivot_a, self.pivot_b))
         centres: dict[int, Moving] = {}
-        # The first point of each body is known; it determines the centre of mass and the second point.
+        # The known first point of each body determines the centre of mass and the second point.
         for body, start, other in (
             (0, "O", "R"),
             (1, "R", "P"),

@@ -49,7 +49,7 @@ class NFourBar(Scene):
 
     @cached_property
     def pendulum(self) -> Pendulum:
-        """The motion of the angle that all cranks have. A motion to +x at the top is clockwise."""
+        """The motion of the cranks' common angle. A motion to +x at the top is clockwise."""
         n = self.loops
         frequency = math.sqrt(3 * (3 * n + 1) * self.gravity / (2 * (4 * n + 1) * self.length))
         return Pendulum(frequency, math.pi, -self.speed / self.length)
@@ -116,9 +116,9 @@ class NFourBar(Scene):
         """The reactions (times, rows) [N] in closed form, which is accurate also for large forces near a singular
         position.
 
-        A coupler that doesn't rotate has equal vertical forces at its ends. The balance of moments of a crank about its
-        pivot gives the horizontal force on its top. The balance of forces of each coupler gives the force on the next
-        crank.
+        A coupler that doesn't rotate has equal vertical forces at its ends. A crank's balance of moments about the
+        pivot gives the horizontal force on the crank's top. The balance of forces of each coupler gives the force on
+        the next crank.
         """
         n, m, size = self.loops, self.mass, self.length
         _, _, moving = self._placement(angle, rate, acceleration)
@@ -144,8 +144,8 @@ class NFourBar(Scene):
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """+1 if every loop is a parallelogram, or -1 if a loop is folded with its coupler along a crank.
 
-        In a folded loop one crank lies along the ground and the other crank along the coupler. The form with the
-        smallest error of the angles is chosen; at a singular position all forms fit, and the branch is +1.
+        In a folded loop one crank lies along the ground and the other crank along the coupler. The branch is that of
+        the form whose angles fit best. At a singular position all forms fit, and the branch is +1.
         """
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
         first, second = cranks[..., :-1], cranks[..., 1:]

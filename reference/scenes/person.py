@@ -51,13 +51,14 @@ SHANK_AND_FOOT = Segment(0.061, 0.246, 0.606, 0.416)
 class OneFoot(EmbeddedScene):
     """A person who stands on the left foot, with `mass` [kg], `height` [m] and gravity [m/s^2].
 
-    The motion starts from rest. Angles [rad] are counter-clockwise. Those of `left_shank`, `left_thigh` and `trunk` are
-    from the upward vertical; those of the lifted leg's `right_thigh` and `right_shank` are from the downward vertical.
+    The motion starts from rest. Angles [rad] are counter-clockwise. The angles `left_shank`, `left_thigh` and `trunk`
+    are from the upward vertical. The lifted leg's angles `right_thigh` and `right_shank` are from the downward
+    vertical.
     """
 
     name: ClassVar[str] = "person_one_foot"
     source: ClassVar[str] = "section 18.5, closed kinematic chains: a model of the human body, one foot on the ground"
-    max_durations: ClassVar[float] = 1.0  # contact with the ground, which is later, is not modelled
+    max_durations: ClassVar[float] = 1.0  # later contacts with the ground are not modelled
     mass: Positive = 75.0
     height: Positive = 1.75
     gravity: float = 9.81
@@ -81,7 +82,7 @@ class OneFoot(EmbeddedScene):
 
     @property
     def start(self) -> Array:
-        """The bodies' angles and their rates of zero; x axes are directed away from the left ankle."""
+        """The bodies' angles and then zeros as rates; x axes are directed away from the left ankle."""
         aside = [self.left_shank, self.left_thigh, self.trunk, self.right_thigh, self.right_shank]
         return np.concatenate([np.array(aside) + UPRIGHT, np.zeros(5)])
 
@@ -155,7 +156,7 @@ class TwoFeet(OneFoot):
     """A person who stands on both feet, with `stance` [m] between the ankles. The loop through the ground has three
     freedoms.
 
-    The start is defined by the hip, at `hip_x` [m] from the left ankle and `hip_y` [m] above it, and by the trunk's
+    The start is defined by the hip's position (`hip_x`, `hip_y`) [m] relative to the left ankle, and by the trunk's
     angle. Both knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of
     reach.
     """
@@ -198,7 +199,7 @@ class TwoFeet(OneFoot):
 
     @property
     def start(self) -> Array:
-        """Hip x and y [m], the trunk's angle [rad], and their rates of zero."""
+        """Hip x and y [m] and the trunk's angle [rad], and then zeros as rates."""
         return np.array([self.hip_x, self.hip_y, self.trunk + math.pi / 2, 0.0, 0.0, 0.0])
 
     def angle_rates(self, coordinates: Any) -> tuple[Any, Any]:
@@ -272,8 +273,8 @@ def modes_upright(person: OneFoot) -> tuple[Array, Array]:
         ]
         return np.array(columns).T / (2 * step)
 
-    # Central differences have errors of even powers only and are extrapolated (Richardson). The steps balance rounding
-    # and truncation.
+    # Central differences have errors of even powers only, so Richardson extrapolation is used. The steps balance
+    # rounding and truncation.
     solution: Any = eig((4 * slope(1e-4) - slope(2e-4)) / 3)
     values, vectors = solution
     order = np.argsort(values.real)

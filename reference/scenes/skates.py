@@ -1,4 +1,4 @@
-"""Exact motions of a body on a pin, on one skate without and with a slope, and at rest on several skates.
+"""Exact motions of a body on a pin, on a skate, on a skate on a slope, and at rest on several skates.
 
 The skate's speed u along i' and the turning rate w satisfy u' = a w^2 and (I + m a^2) w' = -m a u w, where the centre
 of mass is at a ahead of the skate (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m the
@@ -144,8 +144,8 @@ class ChaplyginSleigh(Scene):
     def growth_rate(self) -> float:
         """The rate [1/s] at which a small turning rate grows exponentially in straight motion at this speed.
 
-        By w' = -(m a u / (I + m a^2)) w, it is positive if the centre of mass is behind the skate in the direction of
-        travel.
+        By w' = -(m a u / (I + m a^2)) w, the rate is positive if the centre of mass is behind the skate in the
+        direction of travel.
         """
         return -self.offset * self.speed / self._arm**2
 
@@ -230,8 +230,8 @@ class ChaplyginSleigh(Scene):
 
 @dataclass(frozen=True)
 class SleighBackwards(ChaplyginSleigh):
-    """The sleigh with its centre of mass behind the skate, in which a small turning rate grows until the sleigh has
-    turned round."""
+    """A sleigh with the centre of mass behind the skate. A small turning rate grows until the sleigh has turned
+    round."""
 
     name: ClassVar[str] = "sleigh_backwards"
 
@@ -245,10 +245,10 @@ class SleighBackwards(ChaplyginSleigh):
 class SkateOnSlope(Scene):
     """A body with its skate under the centre of mass on an incline.
 
-    No moment acts, so theta = heading + turning_rate t, and the speed along the blade has the rate u' = -gravity sin
-    theta. The path is a cycloid and does not descend in the mean (Neimark and Fufaev). With turning_rate 0 and the
-    blade across the slope (heading 0) the body is at rest, and the blade's force is m g. mass [kg], inertia [kg m^2];
-    gravity [m/s^2] along the incline, to -y; speed [m/s] along the blade at t = 0.
+    No moment acts, so theta = heading + turning_rate t. The acceleration along the blade is u' = -gravity sin theta.
+    The path is a cycloid and does not descend in the mean (Neimark and Fufaev). With turning_rate 0 and the blade
+    across the slope (heading 0) the body is at rest, and the blade's force is m g. mass [kg], inertia [kg m^2]; gravity
+    [m/s^2] along the incline, to -y; speed [m/s] along the blade at t = 0.
     """
 
     name: ClassVar[str] = "skate_on_slope"

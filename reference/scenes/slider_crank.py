@@ -53,7 +53,8 @@ class SliderCrank(Valid):
     def _rod(self, theta: Any) -> tuple[Any, Any]:
         """sin(beta) and cos(beta) without checks of the argument.
 
-        For a complex step the derivative of the cosine is coded, since (1 - sine)(1 + sine) would round a small sine.
+        For a complex step the cosine's imaginary part is computed separately, since (1 - sine)(1 + sine) would round a
+        small sine.
         """
         sine = (self.offset - self.crank * np.sin(theta)) / self.rod
         flat = np.real(sine)
@@ -84,7 +85,7 @@ class SliderCrank(Valid):
     def dead_centres(self) -> tuple[float, float]:
         """The crank angles [rad] at which crank and rod are in line, first stretched and then folded.
 
-        The slider can't drive the crank there, since x' = 0.
+        At these angles the slider can't drive the crank, since x' = 0.
         """
         stretched = math.asin(self.offset / (self.rod + self.crank))
         folded = math.pi + math.asin(self.offset / (self.rod - self.crank))
@@ -226,7 +227,8 @@ class RodEndInSlot(DrivenSliderCrank):
 class SliderAtDeadCentre(FreeSliderCrank):
     """The slider-crank released at rest near the outer dead centre, under gravity along the slot.
 
-    It would stay at rest at the dead centre. `angle` [rad] determines the time and the direction of its motion.
+    The slider-crank would stay at rest at the dead centre. `angle` [rad] determines when and in which direction the
+    motion begins.
     """
 
     name: ClassVar[str] = "slider_at_dead_centre"

@@ -96,7 +96,8 @@ def our_limits(crank, coupler, rocker, x, y):
 def drawn_limits(rng: np.random.Generator) -> tuple[float, ...]:
     scale = decades(rng)
     crank, ground = decades(rng, -2, 2), decades(rng, -2, 2)
-    # The reachable range is a point if coupler + rocker is |crank - ground|, and a full turn if it is crank + ground.
+    # The reachable range is a point at coupler + rocker = |crank - ground|, and a full turn at coupler + rocker = crank
+    # + ground.
     low, high = abs(crank - ground), crank + ground
     part = decades(rng, -14, -0.3)
     reach, share = low + (high - low) * (part if rng.random() < 0.5 else 1 - part), rng.uniform(0.3, 0.7)

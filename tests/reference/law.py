@@ -27,10 +27,11 @@ class Outside(ValueError):
 
 @dataclass(frozen=True)
 class Law:
-    """A formula in double precision (`ours`) and in fifty digits (`exact`), with equal arguments and results.
+    """A formula in double precision (`ours`) and in fifty digits (`exact`), with the same arguments and results.
 
     vectors: slices of values that are the components of one vector. angles: indices of values that are compared up to
-    whole turns. size: a function that returns the magnitudes whose rounding is allowed, by default the values.
+    whole turns. size: a function that returns the magnitudes whose rounding is allowed; the default magnitudes are the
+    values.
     """
 
     name: str
@@ -70,7 +71,7 @@ def differences(law: Law, values: Sequence[Any], others: Sequence[Any]) -> list[
 
 
 def moved_by_roundings(law: Law, numbers: list[Any], exact: list[Any]) -> list[float] | None:
-    """The change of each value if arguments change by a rounding, or None if the formula has no value nearby."""
+    """The change of each value if every argument changes by a rounding, or None if the formula has no value nearby."""
     out = [0.0] * len(exact)
     for index, number in enumerate(numbers):
         moves = []

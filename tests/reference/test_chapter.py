@@ -29,7 +29,7 @@ from reference.trajectory import Trajectory
 from tests.present import present
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
-# The coupler's rotation rate vanishes at theta = 2.8006 and 5.9406 rad. The intervals of the test do not contain these
+# The coupler's rotation rate vanishes at theta = 2.8006 and 5.9406 rad. No interval of the test contains one of these
 # angles.
 ARCS = {"coupler backward": (0.6, 2.4), "coupler forward": (3.5, 5.5)}
 
@@ -109,7 +109,7 @@ def test_the_centrode_error_is_the_velocity_error_over_the_rotation_rate():
 def test_shapes_have_equal_arc_lengths_and_touch_at_equal_indices():
     shapes = shapes_of(from_poses(*coupler(*ARCS["coupler forward"], 401)[:2]), points=300)
     lengths = [np.linalg.norm(np.diff(points, axis=0), axis=-1) for points in (shapes.space, shapes.body)]
-    # A chord of 3 mm is shorter than its arc by about the cube of its length over the squared radius of curvature.
+    # A chord of 3 mm is shorter than the arc by about 3 mm cubed over the squared radius of curvature.
     np.testing.assert_allclose(lengths[0], lengths[1], atol=1e-6)
     for index in (0, 150, 299):
         np.testing.assert_allclose(placed_body(shapes, index)[index], shapes.space[index], atol=1e-13)

@@ -37,8 +37,8 @@ FOUND = {
     ),
     # On the flat side the two terms of the tangent angle nearly cancelled.
     "ellipse at a parameter": (0.2970230243104033, 0.0011085289153370565, -1.5707907017221043),
-    # The logarithm of a number near 1 lost digits for a short path, and the sum of two angles on a circle that is
-    # shorter than the drawbar.
+    # For a short path the logarithm of a number near 1 lost digits. On a circle smaller than the drawbar the sum of two
+    # angles lost digits.
     "towed wheel": (1185375.3119599016, 0.5602953463275804, 1259916407.01395, 4.095497157341971e-05),
     "towed wheel, going round": (
         *(6.205517261697245, -0.15671260809038934, -0.08751075069403959, -12.758961976426988),

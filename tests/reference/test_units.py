@@ -1,7 +1,7 @@
 """Tests that a scene with lengths of nanometres or gigametres has the scaled motion.
 
-A change of unit by an even power of two changes no digit of products, sums and roots. So any difference is caused by a
-constant that depends on a unit.
+A change of unit by a power of two changes no digit of products and sums. So any difference is caused by a constant that
+depends on a unit.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ UNITS = {
 }
 OTHER = {("elliptic_gears", "eccentricity"): (0, 0, 0)}
 POSES = ("start", "pose")  # Fields whose values are x, y and angle.
-# Units of length [m], time [s] and mass [kg]. Small multiples of their binary exponents do not add up to zero, so that
+# Units of length [m], time [s] and mass [kg]. Small multiples of the powers of two do not add up to zero, so that
 # errors in two exponents cannot cancel.
 SCALES = {"small": (2.0**-30, 2.0**-17, 2.0**23), "large": (2.0**30, 2.0**19, 2.0**-13)}
 

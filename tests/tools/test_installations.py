@@ -22,7 +22,7 @@ import pytest
 from tests import ROOT
 from tests.reports.test_check import FOUR_BAR
 
-OLDEST_SETUPTOOLS = 77  # The build-system table of pyproject.toml has this number.
+OLDEST_SETUPTOOLS = 77  # pyproject.toml requires this version.
 # Folders that are not committed, and folders that a wheel does not contain.
 LEFT_OUT_OF_CHECKOUT = (".*", "__pycache__", "build", "dist", "*.egg-info", "crosscheck-results", "tests")
 BUILD = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"
@@ -80,8 +80,8 @@ Their engine reaches {{ best("turning_wheel", "multipliers", "closed").angle | n
 {% endblock %}
 """
 THEIR_METHODS = ("multipliers default", "multipliers closed")
-# The program runs several commands in one interpreter, since each start takes longer than a command. It prints each
-# command's status in a line.
+# The program runs several commands in one interpreter, since each start takes longer than a command. The program prints
+# each command's status in a line.
 COMMANDS_IN_ONE_PROCESS = """
 import json, sys
 from reports.cli.commands import invoke

@@ -1,4 +1,4 @@
-"""Tests without the features that Windows and macOS lack, of lower bounds, and of the layers of imports."""
+"""Tests without features that Windows and macOS lack, and tests of lower bounds and of the layers of imports."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import pytest
 from tests import ROOT
 from tests.tools.lower_bounds import PYPROJECT, lower_bounds
 
-# This program removes features that Windows lacks. Worker processes import it first, so the features are missing there
-# too.
+# This program removes features that Windows lacks. Worker processes import this program first, so they lack the
+# features too.
 SCRIPT_WITHOUT_UNIX = """
 import multiprocessing
 import os

@@ -110,7 +110,7 @@ def test_every_cell_runs_and_its_claims_about_engines_are_right(lecture):
     assert module.slopes["pymunk default"] == pytest.approx(1.0, abs=0.35)
     assert module.slopes["mujoco tuned"] == pytest.approx(2.0, abs=0.35)
     # With RK4 the error has a plateau over thirty times as many steps. With the default integrator two errors cancel at
-    # one step. Tuned settings reduce the error more than a tenfold smaller step.
+    # one step. Tuned settings reduce the error more than a step that is a tenth as long.
     plateau = module.swept["mujoco RK4"]
     assert plateau.min() > plateau.max() / 2
     assert module.swept["mujoco default"][-1] < plateau[-1]
@@ -133,7 +133,7 @@ def test_the_exercises_on_rolling_and_skates_have_the_known_answers(lecture):
     # The value is omega^2 / (1/b + kA) with kA = 1/a on the disc, 0 on flat ground and -1/a in the hole.
     assert module.starts == pytest.approx({"disc": 1 / 6, "flat": 1 / 4, "hole": 1 / 2}, rel=1e-12)
     assert "8: (Move(turn=1.57" in printed
-    # Differences of second order over a millisecond have an error of 1e-6 times rates near 1.
+    # Differences of second order over a millisecond have an error of about 1e-6.
     assert module.factor == pytest.approx(1.0, abs=1e-4)
     # The turning rate, a sech, begins at 1e-3 rad/s and has decayed at the end.
     assert module.turned == pytest.approx(math.pi * module.gyration / 0.5, rel=1e-3)

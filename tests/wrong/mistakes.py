@@ -34,7 +34,8 @@ from reports.search.planted import Misbuilt
 Some = TypeVar("Some")
 
 NUMBER_KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
-# Number of bodies or joints up to which all are changed. In longer lists only the first, middle and last are changed.
+# Number of bodies or joints up to which all of them are changed. In longer mechanisms only the first, middle and last
+# body or joint is changed.
 MOST_TRIED = 6
 
 
@@ -59,7 +60,7 @@ class Mistake:
         return " ".join(filter(None, (self.kind, self.owner, self.detail)))
 
     def made(self, right: Mechanism, relative: float) -> Misbuilt:
-        """The wrong model. The start satisfies the joints with the smallest change in the norm of the masses."""
+        """The wrong model. The start satisfies the joints and has the smallest change in the norm of the masses."""
         bodies, joints, gravity = list(right.bodies), list(right.joints), right.gravity
         twist = right.twist.copy()
         length, time = right.length_scale, right.time_scale
@@ -83,7 +84,7 @@ class Mistake:
 
 
 def _lengthened(joint: Joint, body: str | None, factor: float) -> Joint:
-    """The joint with the position of its point on this body (None: ground) times `factor`."""
+    """The joint with the position of the joint's point on this body (None: ground) times `factor`."""
     changes = {}
     for name, point in ((joint.first, "first_point"), (joint.second, "second_point")):
         if name == body and point in joint.__dataclass_fields__:
@@ -217,9 +218,9 @@ class Sighting:
     """How a mistake was noticed.
 
     `check`: the check of theory that only the wrong model fails, or "". `every`: the number of steps per sample in the
-    last run. `changed`: whether the gate of change distinguishes wrong and right row at any step. `shift`: the largest
-    difference between errors of the wrong and the right model, in the errors' units. `noise`: the largest error of the
-    right model. The step with the smallest noise is used.
+    last run. `changed`: whether the gate of change distinguishes the wrong row from the right row at any step. `shift`:
+    the largest difference between errors of the wrong and the right model, in the errors' units. `noise`: the largest
+    error of the right model. Both are from the step with the smallest noise.
     """
 
     check: str = ""

@@ -52,8 +52,9 @@ class Constants:
     """Constants of the closed form for lengths l1, l2, l3 [m] and the ground vector A -> D of length d [m].
 
     heading [rad] is the direction of A -> D. outer_near and outer_far are U at theta' = 0 and pi, inner_near and
-    inner_far are W at theta' = 0 and pi. B can't reach its largest distance from D if outer_far is negative, and its
-    smallest distance if inner_near is negative. The loop has no position if outer_near or inner_far is negative.
+    inner_far are W at theta' = 0 and pi. If outer_far is negative, B can't reach the largest distance from D. If
+    inner_near is negative, B can't reach the smallest distance. The loop has no position if outer_near or inner_far is
+    negative.
     """
 
     l1: float
@@ -149,7 +150,7 @@ def _triangles(c: Constants, theta: Array) -> Triangles:
     scale = 1 / (cosine + sine)
     fourfold = 4 * c.l1 * c.d
     along = fourfold * (sine * scale)
-    # U and W are computed from the end of the range at which they are smaller, since they may be zero there.
+    # U and W are computed from the end of the range at which their value is smaller and may be zero.
     near_u, near_w = abs(c.outer_near) < abs(c.outer_far), abs(c.inner_near) < abs(c.inner_far)
     across = fourfold * (cosine * scale)
     u = c.outer_near - along if near_u else c.outer_far + across
@@ -171,8 +172,8 @@ def _triangles(c: Constants, theta: Array) -> Triangles:
 def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> tuple[Array, Array]:
     """beta and phi [rad], continuous in theta."""
     _, m, n, h, p, r, area = triangles
-    # v is B - D, scaled and rotated. Its angle is measured from the longer of D -> A and A -> B and is below a right
-    # angle.
+    # v is B - D, scaled and rotated. The angle of v is measured from the longer of D -> A and A -> B and is below a
+    # right angle.
     winding = c.l1 > c.d
     vx, vy = (m, h) if winding else (n, -h)
     # The sum of the angles of v and of the triangle is less than a whole turn, so one arctangent is enough.

@@ -22,7 +22,7 @@ from reference.scenes.four_bar.linkage import FourBar
 Array = NDArray[np.float64]
 
 States = Callable[[Array], Any]
-# Tolerance: a thousand roundings of numpy.longdouble, or one rounding if it is a double.
+# Tolerance of a thousand roundings of numpy.longdouble, or of one rounding if numpy.longdouble is a double.
 CURVE_TOLERANCE = gauss.WINDOW_TOLERANCE / 10
 # If the largest component of t is below this fraction of the squared length of the longest bar, the bars are in line to
 # rounding.
@@ -87,7 +87,8 @@ class CurveMotion(Valid):
 
         root = np.sqrt(self._inertia(start[:3], self._direction(start[:3]))) / largest
         state = np.append(unit * start[:3], start[3] * root)
-        # The integrator is for second-order equations. The state is its velocity, and its positions are not used.
+        # The integrator is for second-order equations. The state is used as the velocity; the positions of the
+        # integrator are not used.
         solution = gauss.integrate(slopes, np.zeros(4), state, until, float(unit), stages, CURVE_TOLERANCE)
 
         def states(times: Array) -> Any:

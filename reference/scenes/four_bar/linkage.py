@@ -56,7 +56,7 @@ def bar_forces(
     rates: tuple[Numbers, Numbers, Numbers],
     accelerations: tuple[Numbers, Numbers, Numbers],
 ) -> Forces:
-    """Forces in a known motion of uniform bars.
+    """Forces that cause a motion of uniform bars.
 
     lengths [m]; density [kg/m] of all bars or of crank, coupler and rocker; gravity [m/s^2]. Angles, rates and
     accelerations of crank, coupler and rocker (theta, beta, phi) broadcast.
@@ -212,14 +212,14 @@ class FourBar(Valid):
     """A planar four-bar A B C D with lengths AB, BC, CD [m] and D at `ground` [m].
 
     Every method broadcasts its arguments. Angles are not wrapped and are continuous in theta within one reachable
-    interval. They increase with the crank's turns if the crank is longer than AD. The chapter's start, theta = pi/2,
-    has beta = pi/4 and phi = 3 pi/4. Both branches measure angles from the same direction D -> B.
+    interval. The angles increase with the crank's turns if the crank is longer than AD. The chapter's start, theta =
+    pi/2, has beta = pi/4 and phi = 3 pi/4. Both branches measure angles from the same direction D -> B.
 
     Errors are a few roundings in regular positions. At a distance x [rad] from the end of a reachable interval, angles
-    have an error of about eps / sqrt(x), at most sqrt(eps) = 1e-8. Rates grow like 1 / sqrt(x) there, with a relative
-    error of eps / x; at the end they are infinite or NaN. At a change point the crank does not determine C, and each
-    `branch` has a kink. If crank = AD and coupler = rocker, B meets D, where C is not determined. This crank angle is
-    Unreachable, and the angles jump by pi across it.
+    have an error of about eps / sqrt(x), at most sqrt(eps) = 1e-8. Near the end rates grow like 1 / sqrt(x), with a
+    relative error of eps / x. At the end rates are infinite or NaN. At a change point the crank does not determine C,
+    and each `branch` has a kink. If crank = AD and coupler = rocker, B meets D, where C is not determined. This crank
+    angle is Unreachable, and the angles of coupler and rocker jump by pi there.
 
     Raises InvalidMechanism for lengths that are not positive, D on A, or bars that can't be assembled at any crank
     angle. Methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or
@@ -261,7 +261,7 @@ class FourBar(Valid):
 
     @validated
     def angles(self, theta: ArrayLike, branch: Signs = 1) -> tuple[Any, Any]:
-        """beta and phi [rad] in closed form, which does not exist according to the chapter."""
+        """beta and phi [rad] in a closed form, although the chapter claims that none exists."""
         return self._evaluated(theta, 0.0, 0.0, branch, order=0)  # type: ignore[return-value]
 
     @validated

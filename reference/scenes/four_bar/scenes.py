@@ -145,7 +145,7 @@ class DrivenFourBar(FourBarScene):
 
 @dataclass(frozen=True)
 class FreeFourBar(FourBarScene):
-    """The linkage moves under its weight from rest or with a crank rate. It may pass crank limits.
+    """The linkage moves under its weight from rest or with a crank rate. The crank may pass its limits.
 
     With one freedom and constant energy, errors are drifts of energy and time, which grow about linearly, so the
     horizon is the duration. Errors grow faster at a change point and with the energy of an unstable equilibrium.
@@ -177,7 +177,7 @@ class FreeFourBar(FourBarScene):
 
     def truth_error(self, t: ArrayLike) -> Array:
         """The error (times,) of the motion, estimated by the largest difference [m, rad, m/s, rad/s] of a pose or twist
-        to another collocation rule. It includes rounding to double."""
+        to another collocation rule. The estimate includes rounding to double."""
         times = self.times(t)
         pairs = zip(self._bodies(self._angles(times)), self._bodies(self._angles(times, COARSE_STAGES)), strict=True)
         return np.max([np.abs(fine - coarse).max(axis=(1, 2)) for fine, coarse in list(pairs)[:2]], axis=0)
@@ -211,8 +211,7 @@ class SpinningFourBar(FreeFourBar):
     rate: float = 10.0
 
 
-# If the sine of the transmission angle is below this value, rows count as dependent and reactions of rigid bars as not
-# determined.
+# If the sine of the transmission angle is below this value, rows count as dependent, and reactions are not determined.
 IN_LINE = 1e-6
 
 
@@ -220,8 +219,9 @@ IN_LINE = 1e-6
 class Parallelogram(DrivenFourBar):
     """A parallelogram linkage, whose bars are in line twice a revolution.
 
-    From these positions the bars can move on parallel or crossed. The reference motion is smooth, with a coupler that
-    is always parallel to the ground. The `branch` is not constant, since C passes from one side of B -> D to the other.
+    At these positions two motions are possible, with parallel and with crossed bars. The reference motion is smooth,
+    with a coupler that is always parallel to the ground. The `branch` is not constant, since C passes from one side of
+    B -> D to the other.
     """
 
     name: ClassVar[str] = "parallelogram"

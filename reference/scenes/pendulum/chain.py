@@ -49,11 +49,11 @@ CORRECTED = 3e-10
 
 Motion = Callable[[ArrayLike], Array]
 
-# Number of links up to which collocation is faster than the explicit method, since a numpy call costs more than its
+# Number of links up to which collocation is faster than the explicit method, since numpy calls cost more than their
 # arithmetic.
 FEW_LINKS = 20
-# Difference of starts [rad] whose growth is measured. It is small compared with a swing and large compared with
-# rounding.
+# Difference of starts [rad] whose growth is measured. The difference is small compared with a swing and large compared
+# with rounding.
 PERTURBATION = 1e-6
 # Factor by which a difference grows until the horizon.
 TENFOLD = 10.0
@@ -271,8 +271,8 @@ class Chain(Valid):
     def divergence(self, angle: ArrayLike, rate: ArrayLike, t: Times, starts: Count = 3) -> Array:
         """The largest growth factor of a small difference of starts at times t (times,) [s].
 
-        The number of neighbours that are integrated is `starts`. Their start angles differ by PERTURBATION in
-        pseudo-random directions with a fixed seed. A difference is measured by its largest angle.
+        `starts` neighbouring motions are integrated. The angles at their starts differ by PERTURBATION in pseudo-random
+        directions with a fixed seed. The largest angle measures a difference.
         """
         t, start = sample_times("chain", t), self._start(angle, rate)
         until = max(float(t.max(initial=0.0)), math.ulp(1.0))
@@ -294,11 +294,11 @@ class Chain(Valid):
 
     @validated
     def horizon(self, angle: ArrayLike, rate: ArrayLike, until: Positive) -> tuple[float, float]:
-        """(time [s] at which a difference has grown tenfold, rate [1/s] of its exponential growth between that time and
+        """(time [s] at which a difference has grown tenfold, rate [1/s] of the exponential growth from that time to
         `until`).
 
         If the difference does not grow tenfold, the time is `until` and the rate is NaN. The rate is fitted to the
-        logarithm of `divergence` up to `until`; for late `until` it tends to a Lyapunov exponent.
+        logarithm of `divergence` up to `until`; for large `until` the rate tends to a Lyapunov exponent.
         """
         t = np.linspace(0, until, 201)
         growth = self.divergence(angle, rate, t)
@@ -314,7 +314,7 @@ class Chain(Valid):
         """A bound (times,) on the error of the integrated motion [rad, rad/s], from the difference to a tolerance 10
         times larger.
 
-        For collocation it is ten times the difference plus rounding, since both tolerances are near rounding.
+        For collocation the bound is ten times the difference plus rounding, since both tolerances are near rounding.
         """
         times, start = sample_times("chain", t), self._start(angle, rate)
         if self.links > FEW_LINKS:

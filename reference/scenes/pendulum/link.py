@@ -47,7 +47,7 @@ def quarter_period(complement: float) -> float:
 def incomplete(sine: ArrayLike, cosine: ArrayLike, complement: float) -> Array:
     """F [1], the incomplete integral of the first kind, of the amplitude atan2(sine, cosine) in (-pi, pi].
 
-    The amplitude is given by its sine and cosine, times a common factor, since an amplitude near pi/2 has too few
+    The arguments are the amplitude's sine and cosine, times any common factor, since an amplitude near pi/2 has too few
     digits if n is near 0. At n = 0 the cosine must be positive.
     """
     sine, cosine = np.asarray(sine, dtype=float), np.asarray(cosine, dtype=float)
@@ -124,8 +124,8 @@ class Pendulum(Valid):
 
     @cached_property
     def _start(self) -> tuple[float, float, float, float, float]:
-        """(direction, whole turns, s, c, p) of the motion with a positive rate; s and c are of the angle without whole
-        turns."""
+        """(direction, whole turns, s, c, p) of the start after reflection to a positive rate; s and c are of the angle
+        without whole turns."""
         direction = -1.0 if self.rate < 0 else 1.0
         rest = math.remainder(self.angle, 2 * math.pi)
         turns = round((self.angle - rest) / (2 * math.pi))
@@ -280,6 +280,7 @@ class PointPendulum(BarPendulum):
 
     @validated
     def bob(self, pose: Poses) -> Array:
-        """Position of the point mass (..., 2) [m] for poses (..., 1, 3), which is at 2/3 of the bar from the pin."""
+        """Position (..., 2) [m] of the point mass for poses (..., 1, 3). Its distance from the pin is 2/3 of the
+        bar."""
         angle = pose[..., 0, 2] + math.pi / 2
         return pose[..., 0, :2] + (2 / 3 - 1 / 2) * self.length * direction_of(angle)

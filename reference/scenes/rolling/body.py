@@ -74,7 +74,8 @@ class RollingBody(Valid):
 
     @cached_property
     def _beyond(self) -> list[float]:
-        """The rotation [rad] farthest beyond the limits in a stage of the integrator; empty without such a stage."""
+        """The rotation [rad] of the integrator's stage that is farthest beyond the limits, or an empty list without
+        such a stage."""
         return []
 
     @contextmanager
@@ -144,7 +145,7 @@ class RollingBody(Valid):
 
     @validated
     def slip(self, friction: Positive, until: Positive) -> float | None:
-        """The first instant [s] before `until` at which |T| exceeds friction * N, or None. It is not later than a
+        """The first instant [s] before `until` at which |T| exceeds friction * N, or None. A slip is not later than a
         hop."""
         return self._first(((-1.0, friction), (1.0, friction)), until)
 

@@ -33,7 +33,7 @@ class EllipticGears(Scene):
     e) and its inverse. Gears are uniform discs, described at their centres.
 
     The motion does not determine the forces along the line of the pins, since the pins also fix the distance of the
-    gears. The reactions of these rows are NaN.
+    gears. Reactions along the line of the pins are NaN.
     """
 
     name: ClassVar[str] = "elliptic_gears"

@@ -66,7 +66,7 @@ class Tow(Valid):
         """psi [rad, not wrapped] after the hitch has moved by the distance s (...) [m]; backwards s is negative."""
         distance = np.asarray(distance, dtype=float)
         across, along = self._half_angle_vector(distance)
-        # The angle of (q, p) is psi / 2, and it is monotonic. It is always below pi if the discriminant is not
+        # The angle of (q, p) is psi / 2, and it is monotonic. This angle is always below pi if the discriminant is not
         # negative.
         half_turns = np.round(self._rate * distance / math.pi) if self._discriminant < 0 else 0.0
         return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
@@ -82,7 +82,7 @@ class Tow(Valid):
         return self._rate * distance - np.round(self._rate * distance / math.pi) * math.pi
 
     def _half_angle_vector(self, distance: Array) -> tuple[Array, Array]:
-        """(q, p) times a common factor, in components across and along its direction at the start."""
+        """(q, p) times a common factor, in components across and along the vector at the start."""
         sine, cosine, swing = self._start
         if self._discriminant < 0:
             remainder = self._remainder(distance)
@@ -113,7 +113,7 @@ class Tow(Valid):
         distance = np.asarray(distance, dtype=float)
         if self._discriminant >= 0:
             return self.start[2] + self.curvature * distance + self.relative_angle(distance)
-        # On a small circle the hitch's angle and psi nearly cancel, so 2 rate s, which is a part of both, is left out.
+        # On a small circle the hitch's angle and psi nearly cancel. Both contain 2 rate s, which is left out.
         across, along = self._half_angle_vector(distance)
         slower = 1 / (self.length**2 * (abs(self.curvature) + 2 * self._rate))  # |c| - 2 rate
         slow_part = math.copysign(1.0, self.radius) * (slower * distance + 2 * self._remainder(distance))
@@ -219,7 +219,7 @@ class CarWithTrailers(Valid):
         """The motion at times t [s] from the pose `start` of the rear axle and joint angles `bends` [rad].
 
         speed [m/s] of the rear axle and steering [rad] are numbers or functions of time. A joint angle beyond `limit`
-        [rad] is a jack-knife. Its time is returned, and the ideal motion continues.
+        [rad] is a jack-knife. The result has the time of the jack-knife, and the ideal motion continues.
         """
         times = sample_times("car", t)
         if len(bends) != len(self.lengths):

@@ -43,8 +43,8 @@ class CarAndTrailer(Scene):
     [m]; steering [rad] of the front wheel; hitch [m] behind the car's rear axle; length [m] from hitch to the trailer's
     axle. At t = 0: speed [m/s] of the rear axle (negative speed is backwards and unstable), bend [rad], which is the
     trailer's heading minus the car's heading, and pose of the rear axle. The two wheels of an axle have dependent rows,
-    so one wheel is modelled. With `redundant` both are, `track` [m] apart. Raises InvalidMechanism for steering of a
-    right angle or more.
+    so one wheel is modelled. With `redundant` both wheels are modelled, `track` [m] apart. Raises InvalidMechanism for
+    steering of a right angle or more.
     """
 
     name: ClassVar[str] = "car_and_trailer"
@@ -240,7 +240,7 @@ class Cart(EmbeddedScene):
     `front` [m] ahead of the axle and `width` [m] apart. A caster's wheel is `trail` [m] and its centre of mass
     `caster_centre` [m] behind the kingpin. At t = 0: speed [m/s] and turning_rate [rad/s] of the axle, and angles [rad]
     of the casters relative to the cart, which are 0 if the wheel is behind the kingpin. The two wheels of the fixed
-    axle have dependent rows, so one wheel is modelled. With `redundant` both are modelled.
+    axle have dependent rows, so one wheel is modelled. With `redundant` both wheels are modelled.
     """
 
     name: ClassVar[str] = "cart"
