@@ -41,8 +41,8 @@ def cells(
 
 
 def steps_for(engine: Engine, every: tuple[int, ...]) -> tuple[int, ...]:
-    """The numbers of steps between samples for an engine. An extrapolated variant is run at the largest step only,
-    because its error is then already at rounding.
+    """The numbers of steps between samples with which an engine is run. An extrapolated variant is run at the largest
+    step only, because its error is then already at rounding.
     """
     return every[:1] if engine.variant == "extended" else every
 
@@ -158,7 +158,7 @@ def refusals(attempts: Mapping[str, Callable[[], object]]) -> list[Observation]:
 def read_answers(
     material: Material, method: str, settings: Iterable[tuple[Task, str]], read: Callable[[Answer], str]
 ) -> list[Observation]:
-    """An observation for each task that was run. Its text is `read(answer)` or the reason why the task did not
+    """An observation for each task that was run. The observation is `read(answer)` or the reason why the task did not
     finish."""
     answers = {setting: material.answers.get(task) for task, setting in settings}
     return [

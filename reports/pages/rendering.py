@@ -126,7 +126,7 @@ def render_all(
     if drawing := compared_picture(compared_lines(pages)):
         files[COMPARED_PICTURE] = drawing
     files["index.md"] = render_index(pages, command, files)
-    # A stored row is used only if the same versions are installed, so these are the row's versions.
+    # A stored row is used only if its versions are installed, so the installed versions are those of the row.
     by_engine = {engine: row_versions(engine) for engine in dict.fromkeys(engines.values())}
     made_with = {key: by_engine[engine] for key, engine in engines.items()}
     files["errors.csv"] = as_csv(rows.values(), timings=False, made_with=made_with)

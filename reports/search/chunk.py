@@ -147,7 +147,7 @@ CHECKS_HEADER = ("subject", "check", "judged", "median", "99 %", "worst", "fault
 
 
 def summary_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """Rows under CHECKS_HEADER. The last rows have the number of refused cases by subject."""
+    """Rows under CHECKS_HEADER. The table ends with the number of refused cases by subject."""
     checks: dict[tuple[str, str], list[tuple[float, float]]] = {}
     for case in cases:
         for check, pair in case.result.errors.items():

@@ -89,7 +89,7 @@ class _Draw(Integers):
         self._kinds = tuple(kind for kind in (*ALL_KINDS, *SINGULAR_KINDS) if kind in kinds)
 
     def recipe(self) -> Recipe | None:
-        """Draw a recipe. The result is None if it has no links, or if it has neither gravity nor a motion."""
+        """Draw a recipe. The result is None if the recipe has no links, or if it has neither gravity nor a motion."""
         count = self.whole(1, DRAWN_BODIES)
         moving = not self.chance(4)
         pull = self.two(10) if not moving or self.chance(2) else (0, 0)

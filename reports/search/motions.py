@@ -46,7 +46,8 @@ MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS is the number of steps betw
 # Largest ratio of an error to the error that the declared order predicts from the run with twice the step. The margin
 # covers the next power of the step and the sampling of the error (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
-# Smallest tolerances, relative to the motion. They cover rounding in combined runs and in drives of large inertias.
+# Smallest tolerances, relative to the motion. These tolerances cover rounding in combined runs and in drives of large
+# inertias.
 ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
 DIVERGED_ERROR = 10.0  # A run with a larger error, relative to the motion, has diverged.
@@ -248,9 +249,9 @@ class _Case:
         """(error, tolerance) by check, from a run of the judge with the regularisation that the engine declares at this
         step.
 
-        If the compliance depends on the step, its effect has the declared order only while the compliance is small. So
-        the judge is run with the same compliance and the same steps. The tolerance is ORDER_MARGIN times the larger of
-        two changes of the judge's run.
+        If the compliance depends on the step, its effect has the declared order only while the compliance is small. The
+        judge is therefore run with the compliance and the steps of the engine. The tolerance is ORDER_MARGIN times the
+        larger of two changes of the judge's run.
         The first change is that with doubled steps, since the engine integrates other coordinates. For the second
         change, the compliance is multiplied by the largest ratio of inverse inertias along the motion. The judge
         evaluates the inverse inertia at each pose, and MuJoCo only at the start.
@@ -310,9 +311,9 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
     """Errors of a method with an error estimate and the bounds that it claims, over a longer motion at usual steps.
 
     Until `unresolved_at` a method claims an error of at most CLAIM for poses, relative to a radian or the length scale.
-    It claims an error of at most FORCES for reactions, relative to the largest force, unless it warns of reactions. Any
-    other warning withdraws the claims for poses and for reactions. NEEDLESS_REPORT is 1 if a method warns although all
-    poses are within the claim, else 0. A needless report is not a fault.
+    The claim for reactions is an error of at most FORCES, relative to the largest force, unless the method warns of
+    reactions. Any other warning withdraws the claims for poses and for reactions. NEEDLESS_REPORT is 1 if a method
+    warns although all poses are within the claim, else 0. A needless report is not a fault.
     """
     steps, every = (
         CLAIM_STEPS[number % len(CLAIM_STEPS)],

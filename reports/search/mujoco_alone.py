@@ -211,7 +211,7 @@ def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
             out.append(np.subtract(*speeds))
         else:
             first, second = coupled_coordinates(model, link)
-            slope, bend = link.curve[0] / 2, link.curve[1]  # the second derivative is twice the coefficient
+            slope, bend = link.curve[0] / 2, link.curve[1]  # the second derivative is twice the quadratic coefficient
             along = slope + bend * q[second].sum()
             out.append(np.array([v[first].sum() - along * v[second].sum()]))
     return out

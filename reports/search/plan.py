@@ -34,8 +34,8 @@ GROOVE_SUBJECT = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slo
 
 @cache
 def seed_origin() -> tuple[str, str]:
-    """A rule and the text from which seeds are computed. The text is the hash of the last commit, or without git that
-    of all sources."""
+    """A rule and the text from which seeds are computed. The text is the hash of the last commit, or the hash of all
+    sources if there is no git."""
     if (ROOT / ".git").exists():
         command = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
         answer = subprocess.run(command, capture_output=True, text=True, check=False)

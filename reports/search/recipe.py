@@ -155,7 +155,7 @@ class Standing:
         return Rod(f"{link.kind} {number}", *self._ends(link), first_point, second_point, length)
 
     def _force(self, link: RecipeLink, number: int) -> ForceElement:
-        """The force element of a link. Its strength is in units of the second body's mass, inertia and size."""
+        """The force element of a link. The strength is in units of the second body's mass, inertia and size."""
         self._check(link, number)
         body, name, ends = self.bodies[link.second - 1], f"{link.kind} {number}", self._ends(link)
         strength, rate = float(ladder(link.strength)), 1 / float(self._time)

@@ -36,7 +36,8 @@ State = tuple[Array, Array]  # pose and twist (bodies, 3) after the last step, i
 
 # Methods that combine runs amplify rounding up to a hundred times. Very stiff constraints lose half of the digits.
 DESCRIPTION_TOLERANCE = 1e-7
-# Tolerance in units of the engine's precision. The tolerance is large, since a displacement is a small difference.
+# Tolerance in units of the engine's precision. The tolerance is large, since a displacement is a small difference of
+# positions.
 LOW_PRECISION_ROUNDINGS = 1e4
 POSITION_ROUNDING = 1e-6  # Displacements that are smaller, relative to the position, have large rounding errors.
 MAX_NOISE = 0.1  # If the noise relative to the motion is larger, the check detects nothing.

@@ -1,7 +1,7 @@
 """Checks of MuJoCo's accelerations in the installed release, or in another release by a separate process.
 
-As a program, the module reads models as lines of JSON. It writes a line of JSON with the answer or the exception for
-each model.
+As a program, the module reads models as lines of JSON. The output has a line of JSON with the answer or the exception
+for each model.
 """
 
 # pyright: reportAttributeAccessIssue=false
@@ -34,8 +34,8 @@ def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     """The values are relative "errors" by check, the accelerations "found" and "expected", and the "version".
 
     BESIDE_CURVED is the smaller of the errors with and without the velocity term of curved equalities.
-    `version`: a release such as "3.6.0", or "" for the installed release. Raises Fault if the other release raises or
-    crashes.
+    `version`: a release such as "3.6.0", or "" for the installed release. Raises Fault if the other release raises an
+    exception or crashes.
     """
     if version:
         return _check_in_other_release(version, case_to_json(model))

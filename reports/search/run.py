@@ -35,8 +35,8 @@ PLANTED_LIMIT = 1800.0  # CPU time of a control with a planted fault [s].
 WAVE_CHUNKS = 4  # Chunks for each worker between two checks of the time limit.
 DEFAULT_CASES = 200
 
-# Function of (store, tasks, limit, label, number of cases of a task). It returns a context with the tasks that are not
-# stored, a function done(answer, count), and a watch.
+# Function of (store, tasks, limit, label, number of cases of a task). The result is a context with the tasks that are
+# not stored, a function done(answer, count), and a watch.
 Progress = Callable[..., AbstractContextManager[tuple[Sequence[Any], Callable[..., None], Any]]]
 
 

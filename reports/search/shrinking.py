@@ -91,7 +91,7 @@ def _with_smaller_numbers(value: Any) -> Iterator[Any]:
 
 SHRINK_TIME = 20.0  # CPU time for one finding [s].
 KEPT_SHARE = 0.01  # Smallest ratio of the error to the original error; a smaller error may have another cause.
-FINDINGS_SHRUNK = 2  # Number of findings of each check and subject that are reduced.
+FINDINGS_SHRUNK = 2  # Number of findings that are reduced for each check and subject.
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ def compressed_size(files: Mapping[str, bytes]) -> int:
 
 
 class Quiet(SimpleHTTPRequestHandler):
-    """A request handler without a log. Its content types do not depend on the system."""
+    """A request handler without a log. The content types do not depend on the system."""
 
     extensions_map = {  # noqa: RUF012 (the base class has a mutable attribute too)
         **SimpleHTTPRequestHandler.extensions_map,

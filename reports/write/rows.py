@@ -72,8 +72,8 @@ class Rows(tuple[Measurement, ...]):
 def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
     """The functions by which templates look up rows of scenes.
 
-    They are `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine, variant,
-    every)` and `ended(scene, engine, variant)`. The function `ended` returns the outcomes of the method.
+    Templates can call `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine,
+    variant, every)` and `ended(scene, engine, variant)`. The function `ended` returns the outcomes of the method.
     """
     rows = Rows(material.sweep(scenes))
 

@@ -1,7 +1,7 @@
 """Reads models of other authors. For each model the table has the number of bodies or the reason of a refusal.
 
-`python -m tests.reports.models_of_others` writes the table of the page `your_model`. It downloads two packages with pip
-into a temporary folder, and runs pymunk's examples without their windows.
+`python -m tests.reports.models_of_others` writes the table of the page `your_model`. The module downloads two packages
+with pip into a temporary folder, and runs pymunk's examples without windows.
 """
 
 from __future__ import annotations

@@ -202,7 +202,7 @@ def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
         assert has(panel, body_curve @ np.array([[c, s], [-s, c]]) + poses[index, 0, :2])
         assert has(panel, [[0.0, 0.0], space[index]])  # the line of the crank ends at the instant centre
     run, total = (np.array(points(line)) for line in draw_rate(curves).axes[0].get_lines())
-    # The instant centre moves by 0.5 m per radian. Splines reproduce this within 1e-6, except near the ends.
+    # The instant centre moves by 0.5 m per radian. Except near the ends, the error of the splines is below 1e-6.
     assert run[5:-5] == pytest.approx(np.column_stack([np.degrees(theta), np.full(41, 0.5)])[5:-5], abs=1e-6)
     assert total[:, 1] == pytest.approx(1 / (curves.space_curvature + curves.body_curvature))
     [missed] = draw_rate(replace(curves, body=2 * body_curve)).axes[1].get_lines()

@@ -264,7 +264,7 @@ def test_a_torque_that_is_zero_by_symmetry_is_not_the_scale_of_reaction_errors()
     assert result.advised is not None
     off = np.abs(result.advised.run.reaction - truth.reaction)[:, ~mechanism.is_angular].max()
     assert off < 1e-5 * forces.max()  # The difference is the compliance of the stiffest loop.
-    # The measured error is that of vectors with two components; `off` is that of a single component.
+    # The measured error is the error of vectors with two components, and `off` is the error of single components.
     assert off / forces.max() / 2 < result.advised.reaction < 2 * off / forces.max()
     wrong = truth.reaction + 0.1 * mechanism.is_angular * np.abs(truth.reaction).max() * result.facts.length
     run = type(truth)(truth.t, truth.pose, truth.twist, wrong, 0.0)

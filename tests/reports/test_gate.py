@@ -71,7 +71,7 @@ def test_two_orders_tell_what_any_order_costs(order_of, expected):
 
 @pytest.mark.parametrize("quantity", NAMES)
 def test_each_quantity_that_is_above_its_bound_fails_and_no_other(quantity):
-    # With the second order, the error at a tenth of the judge's step is a hundredth of the judge's error, 1e-4.
+    # At a tenth of the judge's step, the error of second order is 1e-4 / 100.
     result = theory(JUDGE, ConvergenceOrder(2), None, row(**alone(quantity, 1.1 * (ROOM * 1e-6 + 2e-9))))
     assert [check.quantity for check in result if not check.passed] == [quantity]
     assert all(

@@ -33,7 +33,7 @@ LIFT = '<body name="l"><joint type="slide" axis="0 0 1"/><inertial pos="0 0 0" m
 
 
 def mjcf(bodies, more="", flags="", rate=0.0, control=0.0, joint=""):
-    """The reading of a model without contacts. The initial velocity of its first coordinate is `rate`."""
+    """The reading of a model without contacts. The first coordinate has the initial velocity `rate`."""
     model = mujoco.MjModel.from_xml_string(
         f'<mujoco><compiler angle="radian"/><option actuatorgroupdisable="3"><flag contact="disable" {flags}/></option>'
         f"<worldbody>{bodies.format(joint)}</worldbody>{more}</mujoco>"

@@ -73,7 +73,7 @@ def test_an_impossible_scene_is_refused():
 
 def test_a_square_reaches_its_corner_at_the_time_that_energy_determines_and_methods_stop_there():
     scene = SquareOnCatenaries()
-    # This is almost the end of the motion, so the last step is shortened.
+    # The motion ends at the corner, so the last step of the integration is shortened.
     corner = scene.motion([scene.corner * (1 - 1e-9)])
     assert corner.pose[0, 0, 2] == pytest.approx(math.pi / 4, abs=1e-8)
     np.testing.assert_allclose(corner.pose[0, 0, 1], 0.0, atol=1e-12)

@@ -60,7 +60,7 @@ def test_each_failure_has_its_own_outcome_and_does_not_change_other_cells():
         assert sentence in rows[repr(toy)].sentence
     for toy, index in sound.items():
         assert rows[repr(toy)].angle == pytest.approx(float(index) * cells[0].step ** 2, rel=1e-9)
-    # This action is run separately, since the limit of the wall time would be too short for the other actions.
+    # "native sleep" is run separately, since its limit of the wall time would be too short for other actions.
     (row,) = run_cells([Cell(Disc(), RoughToy("native sleep"), 1)], wall=1.0)
     assert (row.outcome, row.sentence) == ("timed out", "did not end within 1 s, and used less than 60 s of CPU time")
 

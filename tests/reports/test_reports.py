@@ -211,6 +211,6 @@ def test_the_animation_of_the_readme_is_small_and_respects_reduced_motion():
     assert len(text.encode()) < 300_000
     still_part, moving_part = text.split("@media (prefers-reduced-motion: no-preference) {")
     assert ("@keyframes" in still_part, "(prefers-color-scheme: dark)" in still_part) == (False, True)
-    # There are three bars in each motion: the exact motion and those of MOVING_METHODS.
+    # Three bars move in the exact motion and in the motion of each method in MOVING_METHODS.
     assert len(re.findall(r"@keyframes m\d+b\d+\{", moving_part)) == 3 * (len(MOVING_METHODS) + 1)
     assert moving_picture([Material({}, dict(list(answers.items())[1:]))]) == {}

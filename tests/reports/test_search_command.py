@@ -171,7 +171,7 @@ def script_of(engine: Engine, kinds: tuple[str, ...], check: str, number: int) -
 
 
 def cases_with(engine: Engine, kinds: tuple[str, ...], first: int = 0) -> list[Recipe]:
-    """Those of twenty cases from `first` on that have all these kinds."""
+    """Of twenty cases from `first` on, the cases that have all these kinds."""
     drawn = [Adapted(engine).draw(SEED, number, kinds, 0) for number in range(first, first + 20)]
     return [case for case in drawn if set(kinds) <= set(case.kinds)]
 

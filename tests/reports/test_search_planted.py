@@ -87,7 +87,7 @@ def test_a_mass_error_of_a_millionth_is_found_beside_the_known_fault(monkeypatch
 @pytest.mark.parametrize(("version", "most"), [("3.6.0", 20), ("4.0.0", 2000)])
 def test_the_fault_of_a_past_release_is_found(version: str, most: int) -> None:
     """MuJoCo 3.6.0 omits the velocity term of connects and welds. MuJoCo 4.0.0 factorises the Hessian of its Newton
-    solver wrongly for some branching trees with a sparse Jacobian. Both give no warning."""
+    solver wrongly for some branching trees with a sparse Jacobian. Neither release gives a warning."""
     try:
         process = process_of(version)
     except BadInput as reason:

@@ -184,7 +184,7 @@ def test_springs_of_mujoco_follow_the_sliders_and_sliders_without_effect_are_dis
     python = engine.build(live.scene.mechanism(), step)(live.frames, live.steps[live.start] // live.frames)
     assert np.abs(np.reshape(answer["motions"]["mujoco"]["pose"], python.pose.shape) - python.pose).max() < 1e-12
     assert answer["idle"] == []
-    # pymunk's default can't build a skate, so its settings have no effect; MuJoCo's settings affect a contact.
+    # pymunk's settings have no effect, since its default can't build a skate. MuJoCo's settings affect a contact.
     assert set(run_engines(running("skate"), "skate", "the sleigh", {})["idle"]) == {"iterations", "bias"}
     other = run_engines(running("skate"), "skate", "the sleigh", {"munk": NAIVE, "mujoco": DOCUMENTED})
     assert {"iterations", "bias", "integrator", "timeConstant"} <= set(other["idle"])

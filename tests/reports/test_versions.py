@@ -63,7 +63,7 @@ def entry(version, error, scene="disc", outcome="finished", quantity="angle", en
 def test_changes_between_versions_are_found_from_the_errors():
     line = [("3.9.0", 1e-3), ("3.10.0", 2.9e-3), ("4.0.0", 9e-3), ("4.0.1", 1e-3), ("3.1.0", NAN)]
     entries = [entry(v, e, outcome="unsupported" if e != e else "finished") for v, e in line]
-    entries += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # Both errors are rounding.
+    entries += [entry("3.9.0", 1e-14, "exact"), entry("4.0.0", 9e-12, "exact")]  # both errors are at rounding
     entries += [entry("3.9.0", 1e-3, "breaks"), entry("4.0.0", NAN, "breaks", "torn")]
     assert [(earlier.version, later.version, later.scene, label) for earlier, later, label in changes(entries)] == [
         ("3.9.0", "4.0.0", "breaks", "WORSE"),

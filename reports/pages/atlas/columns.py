@@ -100,10 +100,10 @@ def columns_of(stability_map: StabilityMap, engines: Iterable[Engine], points: i
 
 
 def run_columns(columns: Sequence[MapColumn], run: RunCells, stride: int) -> list[dict[int, Measurement]]:
-    """The rows of each column by the index of the step.
+    """For each column, the rows by the index of the step.
 
-    First, every `stride`-th step is run. Then bisection finds the border between two steps with different outcomes. A
-    region that is narrower than the stride may be missed. `run` is called once for each round of bisection.
+    Every `stride`-th step is run, and bisection finds the border between two steps with different outcomes. A region
+    that is narrower than the stride may be missed. `run` is called once for each round of bisection.
     """
     rows: list[dict[int, Measurement]] = [{} for _ in columns]
     wanted = [sorted({*range(0, len(column.steps), stride), len(column.steps) - 1}) for column in columns]

@@ -195,7 +195,7 @@ class VelocityTerm(BuildingTask):
 FREE_LOOP = FreeFourBar()
 MILLISECOND = round(FREE_LOOP.spacing / 1e-3)  # number of steps of 1 ms between samples
 
-# Quantity -> scenes of its chart. There is a scene of each mechanism whose page compares this quantity.
+# Quantity -> scenes of its chart. Each mechanism has a scene in the chart if its page compares this quantity.
 CHARTED = {
     "angle": (
         *("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10", "n_four_bar_2"),
@@ -221,7 +221,7 @@ MATRIX = tuple(
         tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1],
     )
 )
-# The variants "tuned" of engines that declare compliant loops. They have a small compliance.
+# The variants "tuned" of engines that declare compliant loops, since their compliance is small.
 VELOCITY_TERMS = tuple(
     VelocityTerm(engine)
     for engine in (*registry.VARIANTS, *registry.OTHERS)

@@ -113,8 +113,8 @@ SCRIPTS: Mapping[str, FaultScript] = {
 class Offsets(Task):
     """The velocity across the groove that pymunk's GrooveJoint creates, for several distances of the anchor.
 
-    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The line from the centre of mass to the
-    anchor has an angle of 45 degrees to the groove. Its lengths are `offsets` [m].
+    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The anchor is at the distances `offsets`
+    [m] from the centre of mass, at an angle of 45 degrees to the groove.
     """
 
     offsets: tuple[float, ...]

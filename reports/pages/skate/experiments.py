@@ -34,7 +34,7 @@ WITHOUT_EULER: tuple[Engine, ...] = tuple(
 )
 
 # Rates [rad/s] between which a small rotation grows as in the linearised motion. Both rates are far above the initial
-# rate. Their squares are less than a thousandth of the largest squared rate.
+# rate. The squares of both rates are less than a thousandth of the largest squared rate.
 LINEAR_GROWTH = (2e-3, 4e-2)
 
 

@@ -79,7 +79,7 @@ SKATE_SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinned
 SLEIGH_AHEAD = ChaplyginSleigh()
 
 BLADES = 7  # Blades drawn along a path.
-# Method with a visible error -> (colour, dashes).
+# Method that is drawn, because its error is visible -> (colour, dashes).
 DRAWN_PATHS: dict[str, tuple[str, Any]] = {
     "pymunk skate: centre's velocity zeroed": ("first", "--"),
     "pymunk skate: point's velocity zeroed": ("first", ":"),

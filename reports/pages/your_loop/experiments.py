@@ -34,8 +34,7 @@ UNCHANGED_FIELDS = ("links", "duration", "horizon", "branch", "friction", "densi
 
 
 def draw(scene: Scene, number: int) -> Mechanism:
-    """Random mechanism `number` of the scene's kind. Its lengths, masses and rates are scaled, and its angles are
-    random.
+    """Random mechanism `number` of the scene's kind. Lengths, masses and rates are scaled, and angles are random.
 
     The draw is repeated until the reference motion has more than LEAST_SAMPLES samples.
     """

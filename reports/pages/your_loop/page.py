@@ -73,7 +73,7 @@ PYMUNK_CASES = (
 
 
 def cell(case: PastedCase, engine: Engine) -> Cell:
-    """The cell of a case at 1 ms. Its purpose is "beside" if no other page runs the method in this scene."""
+    """The cell of a case at 1 ms. The cell has the purpose "beside" if no other page runs the method in this scene."""
     beside = engine == pymunk.LEAPFROG and case.scene != LOOP
     return Cell(case.scene, engine, MILLISECONDS_PER_SAMPLE, "beside" if beside else "sweep")
 
