@@ -218,6 +218,14 @@ def test_the_answer_to_a_guess_shows_measured_errors(opened):
     page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('iterations 1')")
 
 
+def test_an_exercise_accepts_its_answer_and_no_other_number(opened):
+    exercise = opened("lessons/four_bar.html", viewport=TALL).locator("form[data-answer=rocker_angle]")
+    for given, verdict in (("2,9", "Right. The page computes 2.9055."), ("-2.9", "The size is right"), ("3", "Not so")):
+        exercise.locator("input").fill(given)
+        exercise.locator("button").click()
+        assert exercise.locator(".verdict").inner_text().startswith(verdict)
+
+
 @pytest.mark.parametrize("stride", [4, pytest.param(1, marks=pytest.mark.slow)])
 def test_every_page_loads_without_errors_and_fits_a_phone(files, opened, stride):
     """Open every lesson and every fourth of the other pages; the slow test opens all pages."""

@@ -2,7 +2,7 @@
 /** Exercises: the page computes each answer from equations, and compares it with the reader's. */
 
 import { MOTIONS, extent, shapesOf } from "./cam.js";
-import { freedoms, rates } from "./exact.js";
+import { freedoms, motion, rates } from "./exact.js";
 import { instantCentre, placed } from "./motion.js";
 import { commutator, moved, sidestep } from "./parking.js";
 
@@ -63,6 +63,66 @@ function fourBar(angle, mirrored = false) {
   return linkage({ A, B, C, D }, ["AB", "BC", "DC"], "AD");
 }
 
+/** Return the velocity of a body's point. @param {ReturnType<typeof linkage>} mechanism @param {number[]} twist @param {number} body @param {number[]} point */
+function velocity({ pose }, twist, body, point) {
+  const [x, y] = placed([0, 0, pose[3 * body + 2]], point);
+  const [vx, vy, rate] = twist.slice(3 * body, 3 * body + 3);
+  return [vx - rate * y, vy + rate * x];
+}
+
+/** Return a slider-crank with a crank of 0.3 m and a rod of 0.9 m; C slides on the x axis. @param {number} angle [degrees] */
+function sliderCrank(angle) {
+  const B = /** @type {Point} */ ([0.3 * Math.cos(rad(angle)), 0.3 * Math.sin(rad(angle))]);
+  const C = /** @type {Point} */ ([B[0] + Math.sqrt(0.81 - B[1] ** 2), 0]);
+  return sliding(linkage({ A: [0, 0], B, C }, ["AB", "BC"], "A"), 1, [0.45, 0], 0);
+}
+
+/** Let a point of a body slide on a line through the origin at an angle [rad]. @param {ReturnType<typeof linkage>} mechanism
+ * @param {number} second @param {number[]} secondPoint @param {number} line */
+function sliding(mechanism, second, secondPoint, line) {
+  const slot = { name: "slot", first: -1, second, firstPoint: [0, 0], secondPoint, line };
+  return { ...mechanism, joints: [.../** @type {any[]} */ (mechanism.joints), slot] };
+}
+
+/** Return the instant centre of a body. @param {ReturnType<typeof linkage>} mechanism @param {number[]} twist @param {number} body */
+function centreOf({ pose }, twist, body) {
+  const [at, moving] = [pose, twist].map((flat) => /** @type {[number, number, number]} */ (flat.slice(3 * body, 3 * body + 3)));
+  return instantCentre(at, moving) ?? [NaN, NaN];
+}
+
+/** Return the swing of a bar of 1 m and 2 kg that is released at a right angle to the vertical. */
+function swing() {
+  const bar = { ...linkage({ O: [0, 0], A: [1, 0] }, ["OA"], "O"), inertia: [2, 2, 2 / 12], gravity: [0, -9.81] };
+  return motion(bar, 1000, 1e-3);
+}
+
+/** Return the solution of x' = rate(x) by the midpoint rule. @param {(x: number) => number} rate @param {number} x @param {number} time */
+function integrated(rate, x, time) {
+  const steps = 20_000;
+  for (let step = 0; step < steps; step++) x += (time / steps) * rate(x + ((time / steps) * rate(x)) / 2);
+  return x;
+}
+
+/** Return the angle [rad] at which a function changes its sign. @param {(angle: number) => number} of @param {number} low @param {number} high [degrees] */
+function zero(of, low, high) {
+  const sign = Math.sign(of(low));
+  for (let round = 0; round < 60; round++) {
+    const middle = (low + high) / 2;
+    if (Math.sign(of(middle)) === sign) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Return the arc of the contact for each radian; curvatures [1/m] are positive towards the material. @param {number} fixed @param {number} rolling */
+const arcRate = (fixed, rolling) => 1 / (fixed + rolling);
+const CURVE = 1 / (2.6 / Math.tan(0.4)); // curvature of the car's circle [1/m]
+/** Return the rate of a trailer's bend [1/s] behind a car; the trailer is 3 m long. @param {number} speed @param {number} curve */
+const bending = (speed, curve) => (/** @type {number} */ bend) => speed * (curve - Math.sin(bend) / 3);
+const gearDistance = (/** @type {number} */ angle) => 0.75 / (1 + 0.5 * Math.cos(angle)); // from the focus, half axis 1 m and eccentricity 0.5
+const gearRatio = (/** @type {number} */ angle) => gearDistance(angle) / (2 - gearDistance(angle));
+const ladder = () => sliding(sliding(linkage({ A: [1, 0], B: [0, Math.sqrt(3)] }, ["AB"], ""), 0, [-1, 0], 0), 0, [1, 0], Math.PI / 2);
+
 const PERSON = ["AB", "BH", "HS", "HK", "KE"];
 /** @type {Record<string, Point>} */
 const STANDING = { A: [0, 0], B: [0.1, 0.4], H: [0.25, 0.8], S: [0.2, 1.4], K: [0.4, 0.45], E: [0.5, 0], L: [0.4, 1.1], G: [0.7, 1.2] };
@@ -90,6 +150,58 @@ export const ANSWERS = {
     const speed = (1 + turning * arm * Math.sin(angle)) / Math.cos(angle);
     return speed * Math.sin(angle) + turning * arm * Math.cos(angle);
   },
+  rocker_angle: () => fourBar(180).pose[8],
+  other_assembly: () => {
+    const { pose } = fourBar(90, true);
+    return -placed([pose[6], pose[7], pose[8]], [0.4 * Math.SQRT2, 0])[1];
+  },
+  dead_centre: () => zero((angle) => rates(fourBar(angle), [[-1, 0, 10]])[8], 30, 90),
+  slider_place: () => {
+    const { pose } = sliderCrank(60);
+    return placed([pose[3], pose[4], pose[5]], [0.45, 0])[0];
+  },
+  slider_speed: () => {
+    const mechanism = sliderCrank(60);
+    return velocity(mechanism, rates(mechanism, [[-1, 0, 10]]), 1, [0.45, 0])[0];
+  },
+  rod_centre: () => {
+    const mechanism = sliderCrank(60);
+    return centreOf(mechanism, rates(mechanism, [[-1, 0, 10]]), 1)[1];
+  },
+  bottom_rate: () => Math.max(...swing().twist.filter((_, index) => index % 3 === 2).map(Math.abs)),
+  bottom_force: () => Math.max(...swing().forces[0].force.filter((_, index) => index % 2 === 1)),
+  tip_acceleration: () => {
+    // Each link adds alpha k x r - rate^2 r.
+    const parts = [[30, 2, 1], [60, -1, 3]].map(([angle, rate, alpha]) => {
+      const [x, y] = [Math.sin(rad(angle)), -Math.cos(rad(angle))];
+      return [-alpha * y - rate * rate * x, alpha * x - rate * rate * y];
+    });
+    return Math.hypot(parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]);
+  },
+  speed_ahead: () => Math.hypot(2, 3 * 0.3),
+  turning_acceleration: () => {
+    // The sideways component of the change of the velocity, for a short time.
+    const time = 1e-6;
+    return (2 * Math.sin(3 * time) - 2 * Math.sin(-3 * time)) / (2 * time);
+  },
+  skated_aside: () => Array.from({ length: 20_000 }, () => ({ turn: 1e-4, slide: 5e-5 })).reduce((pose, { turn, slide }) =>
+    moved(moved(pose, { turn: turn / 2, slide }), { turn: turn / 2, slide: 0 }), START)[1],
+  turning_circle: () => 1 / CURVE,
+  steady_bend: () => integrated(bending(1, CURVE), 0, 100),
+  doubling_time: () => Math.LN2 / Math.log(integrated(bending(-1, 0), 1e-6, 1) / 1e-6),
+  contact_on_circle: () => 3.5 * arcRate(1 / 0.5, 1 / 0.2),
+  ellipse_curvature: () => (0.5 * 0.3) / 0.3 ** 3,
+  conformal_acceleration: () => 2 ** 2 * arcRate(-1 / 0.3, 1 / 0.2),
+  largest_ratio: () => gearRatio(Math.PI),
+  gear_rate: () => (4 * 0.3) / (1 - 0.3),
+  second_angle: () => {
+    let sum = 0;
+    for (let part = 0; part < 10_000; part++) sum += (gearRatio(((part + 0.5) * Math.PI) / 2 / 10_000) * Math.PI) / 2 / 10_000;
+    return sum;
+  },
+  coupler_centre: () => centreOf(fourBar(90), rates(fourBar(90), [[-1, 0, 10]]), 1)[1],
+  coupler_speed: () => Math.hypot(...velocity(fourBar(90), rates(fourBar(90), [[-1, 0, 10]]), 1, [0, 0])),
+  ladder_centre: () => Math.hypot(...centreOf(ladder(), rates({ ...ladder() }, [[-1, 0, 1]]), 0)),
   rocker_rate: () => rates(fourBar(0), [[-1, 0, 10]])[8],
 };
 
