@@ -1,4 +1,4 @@
-"""The files of the site, from Markdown pages, stored motions and fetched packages."""
+"""Builds the files of the site from Markdown pages, stored motions and fetched packages."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ from reports.write.templates import CODE, inert_page
 
 HERE = Path(__file__).parent
 MARKER = "site.json"
-# A link to a file; links to pictures are excluded, since Sphinx resolves them.
+# A link to a file. Links to pictures are excluded, since Sphinx resolves them.
 FILE_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)")
-DRAGGED = re.compile(r"\{(\w+)\}")  # the name of a control in braces, in the text of a lesson
+DRAGGED = re.compile(r"\{(\w+)\}")  # name of a control in braces, in the text of a lesson
 ENGINE_FILES = {"munk2d": "packages/munk2d.js", "mujoco": "packages/mujoco.js"}
 
 # Columns of results/rows.json.
@@ -78,7 +78,7 @@ def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
 
 
 def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
-    """Return scripts, packages, data of the lessons and tables; a missing package adds to `source.troubles`."""
+    """Return scripts, packages, data of the lessons and tables. A missing package is reported in `source.troubles`."""
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
     files[ENGINE_FILES["munk2d"]] = COMPILED.read_bytes()
@@ -96,15 +96,15 @@ def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
 
 
 def _without(source: SiteSource, package: Package) -> list[str]:
-    """Return the sentence that says why a package is missing, if it is."""
+    """Return the sentence on a missing package as a list; empty if the package is present."""
     return [trouble for trouble in source.troubles if trouble.startswith(f"Built without {package.name} ")]
 
 
 def explored(errors: str, timings: str, descriptions: str) -> dict[str, Any]:
-    """Return all rows of sweeps for the page of charts, from the texts of three CSV files; a missing number is None.
+    """Return all rows of sweeps for the page of charts, from the texts of three CSV files. A missing number is None.
 
-    "cpu" is the CPU time per simulated second [s]. "looks" has the role of each engine's colour, and whether the engine
-    is an exact solver. "headings" has the names of the variants.
+    "cpu" is the CPU time per simulated second [s]. "looks" has the role of each engine's colour and whether it is an
+    exact solver. "headings" has the names of variants.
     """
     times, texts = _by(timings, *ROW_KEY), _by(descriptions, "digest")
     rows = []
@@ -160,7 +160,7 @@ def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
 
 
 def _with_links(text: str, moved: Mapping[str, str], documents: Iterable[str]) -> str:
-    """Return a page with links to documents of the site; a link to any other file becomes HTML."""
+    """Return a page with links to documents of the site. A link to any other file becomes HTML."""
     for old, new in moved.items():
         text = text.replace(f"({old}", f"({new}")
 

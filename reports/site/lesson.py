@@ -1,4 +1,4 @@
-"""Lessons (scenes, experiments and their texts) and the input of a site."""
+"""Lessons with scenes, experiments and texts, and the input of a site."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Exercise:
 
 @dataclass(frozen=True)
 class Part:
-    """The texts of an experiment; `after` is the explanation."""
+    """The texts of an experiment. `after` is the explanation."""
 
     heading: str
     text: str
@@ -71,7 +71,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Lesson:
-    """A page on a mechanism, with live scenes and experiments; the file lessons/`name`.md contains the texts."""
+    """A page on a mechanism with live scenes and experiments. The file lessons/`name`.md contains the texts."""
 
     name: str
     title: str
@@ -80,7 +80,7 @@ class Lesson:
     experiments: tuple[Experiment, ...]
 
     def scene(self, word: str) -> Live:
-        """Return the scene of this name. Raises StopIteration without one."""
+        """Return the scene of this name. Raises StopIteration without such a scene."""
         return next(live for live in self.scenes if live.word == word)
 
     @cached_property
@@ -91,7 +91,7 @@ class Lesson:
 
     @property
     def exercises(self) -> tuple[Exercise, ...]:
-        """The exercises, which are at the end of the lesson. Raises ValueError for a text that has another form."""
+        """The exercises at the end of the lesson. Raises ValueError if their text has another form."""
         return tuple(exercise_of(text) for text in self._texts[1].split("\n### ")[1:])
 
     @cached_property
@@ -106,8 +106,8 @@ class Lesson:
 def part_of(text: str) -> Part:
     """Parse the texts of an experiment: a heading, an introduction, and optionally a quotation and an explanation.
 
-    The quotation contains a question and three answers, of which the right one is bold. Raises ValueError for another
-    number of answers, or of right answers.
+    The quotation contains a question and three answers; the right answer is bold. Raises ValueError if there are not
+    three answers with one right answer.
     """
     heading, _, body = text.partition("\n")
     lines = body.strip().splitlines()
@@ -137,7 +137,7 @@ def exercise_of(text: str) -> Exercise:
 
 @dataclass
 class SiteSource:
-    """The input of a site; files by name."""
+    """The input of a site. Files are given as name -> text."""
 
     pages: Mapping[str, str]
     pictures: Mapping[str, str]
@@ -145,7 +145,7 @@ class SiteSource:
     answers: Mapping[Motion, Answer]
     cache: Path
     foot: str
-    contributing: str = ""  # CONTRIBUTING.md, from which pages quote; empty outside of a checkout.
+    contributing: str = ""  # Text of CONTRIBUTING.md, from which pages quote; empty outside of a checkout.
     api: bool = True  # Whether the site has a reference from docstrings, which takes a minute to build.
     lecture: str = ""  # The notebook as JSON.
     troubles: list[str] = field(default_factory=list)  # A message for each missing file.

@@ -1,4 +1,4 @@
-"""Models for the engines in a page: MJCF for MuJoCo, and a list of numbers for pymunk."""
+"""Models for the engines in a page, as MJCF for MuJoCo and as a list of numbers for pymunk."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from reports.site.live.sliders import ENGINES
 
 @dataclass(frozen=True)
 class MujocoText:
-    """A MuJoCo model for the page; `text` is the MJCF that `crosscheck export` writes."""
+    """A MuJoCo model for the page. `text` is the MJCF that `crosscheck export` writes."""
 
     text: str
-    bodies: tuple[int, ...]  # MuJoCo's number of each body of the mechanism.
-    # Parents first: body, parent (-1: ground), indices in qpos of the rotation and the slide (-1: none), slide
-    # direction.
+    bodies: tuple[int, ...]  # Number in MuJoCo of each body of the mechanism.
+    # A link is (body, parent, index in qpos of the rotation, index in qpos of the slide, direction of the slide). The
+    # parent -1 is the ground, and an index of -1 means that there is none. Parents come first.
     links: tuple[tuple[float, ...], ...]
     idle: tuple[str, ...]  # settings without an effect on this model
 
@@ -65,7 +65,7 @@ STEP = 1e-3  # step [s] of pymunk's models, which do not depend on the step
 
 
 class RecordKind(IntEnum):
-    """The kind of a record; munk2d.c uses the same numbers."""
+    """The kind of a record, with the numbers in munk2d.c."""
 
     PIVOT, GROOVE, CIRCLE, SEGMENT, POLYGON, ZEROED, AIMED = range(1, 8)
 
@@ -75,11 +75,11 @@ Indexed = Callable[[Any], int]
 
 @dataclass(frozen=True)
 class MunkSpace:
-    """A pymunk space for the page; `space_of` defines the numbers."""
+    """A pymunk space for the page. `space_of` defines the numbers."""
 
     numbers: tuple[float, ...]
     idle: tuple[str, ...]  # Settings without an effect on this model.
-    impulses: tuple[int, ...]  # Index of the constraint of each pin and slot; -1 without a constraint of pymunk.
+    impulses: tuple[int, ...]  # Index of the constraint of each pin and slot, or -1 if pymunk has no constraint for it.
 
 
 def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace:
@@ -91,7 +91,7 @@ def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace
     and a flag (1: error_bias is the residual after a step, 0: after a second). Each body follows with its kind (0
     dynamic, 1 kinematic), mass, moment, x, y, angle, vx, vy, rate, and its origin (x, y) in our frame. Each record
     follows with its kind, the count of its numbers, and its numbers. In a record, bodies are numbered from 0, and -1 is
-    the ground. The order of the constraints is that of the solver's iterations.
+    the ground. The constraints have the order of the solver's iterations.
     """
     model = engine.model(mechanism, STEP, duration)
     space, unit = model.space, model.unit
@@ -100,7 +100,7 @@ def space_of(engine: Pymunk, mechanism: Mechanism, duration: float) -> MunkSpace
     def index(body: Any) -> int:
         return places.get(body, -1)
 
-    constraints = list(space._constraints)  # A list, while the public property is a set without an order.
+    constraints = list(space._constraints)  # This list has an order, while the public property is a set.
     # An aimed groove has no gap, so its error_bias has no effect.
     aimed = [aim.constraint for aim in model.before_step if isinstance(aim, AimedGroove)]
     biases = {constraint.error_bias for constraint in constraints if constraint not in aimed}
@@ -161,7 +161,7 @@ def _shape(each: Any, index: Indexed) -> tuple[RecordKind, tuple[float, ...]]:
 
 
 def _step_code(model: Model, mechanism: Mechanism) -> list[tuple[RecordKind, tuple[float, ...]]]:
-    """Return records of the adapter's code around a step; munk2d.c implements the two kinds for skates."""
+    """Return records of the adapter's code before and after a step. munk2d.c implements the two kinds for skates."""
     skates = [mechanism.body_index(str(joint.second)) for joint in mechanism.joints if isinstance(joint, Skate)]
     records: list[tuple[RecordKind, tuple[float, ...]]] = []
     for updates in (model.after_step, model.before_step):

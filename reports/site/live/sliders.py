@@ -1,4 +1,4 @@
-"""The controls of a page: parameters of the mechanism, the step, joint constructions, settings of the engines."""
+"""The controls of a page: parameters of the mechanism, the step, joint constructions and settings of the engines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from reports.model.tasks import Motion
 Name = Literal["munk", "mujoco"]
 Point = tuple[float, float]
 NAMES: dict[Name, str] = {"munk": "pymunk", "mujoco": "MuJoCo"}
-MOST = 125  # largest number of positions of a scene's sliders; the page loads models and a drawing for each position
+MOST = 125  # limit of the number of slider positions of a scene, since the page loads data for each position
 SHIPPED, DOCUMENTED = "as shipped", "documented settings"
 # Settings of the engines as pairs (value, label). None means the value of the chosen method.
 OWN = (None, "the method's value")
@@ -59,7 +59,7 @@ CONTROLS = {
 
 @dataclass(frozen=True)
 class Slider:
-    """A slider that sets a field of the scene; `texts`: labels of the values, by default the values."""
+    """A slider that sets a field of the scene. `texts`: labels of the values; without labels, the values are shown."""
 
     field: str
     label: str
@@ -67,7 +67,8 @@ class Slider:
     texts: tuple[str, ...] = ()
 
     def control(self, scene: Scene) -> Control:
-        """Return the control, which starts at the scene's value. Raises ValueError for a scene with another value."""
+        """Return the control with the scene's value as start value. Raises ValueError if the slider lacks this
+        value."""
         texts = self.texts or tuple(f"{value:.3g}" for value in self.values)
         return Control(self.values, texts, self.values.index(getattr(scene, self.field)))
 
@@ -76,8 +77,8 @@ class Slider:
 class Look:
     """Additional elements of the drawing of a mechanism.
 
-    ends: points of bodies [m]. curves: lines [m] in the frame of a body, or of the ground (None). axle: half the length
-    [m] of an axle with two wheels, which is drawn for a skate; 0 draws a blade.
+    ends: points of bodies [m]. curves: (name of a body or None for the ground, points of a line [m] in this frame).
+    axle: half the length [m] of an axle with two wheels, which is drawn for a skate. With 0 a blade is drawn.
     """
 
     ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
@@ -90,10 +91,10 @@ class Live(Look):
     """A scene that engines run in the page.
 
     frames: number of sampling intervals. steps: choices for the number of steps of the whole motion, each a multiple or
-    a divisor of `frames`. start: index of the initial choice. munk, mujoco: methods with labels; the first two are the
-    default method and the one with documented settings. A string instead of an engine is the reason why the method is
-    missing. window: first and last frame that are played; None plays all frames. traces: (body, point) whose paths are
-    drawn. centre: the body whose instant centre can be shown.
+    a divisor of `frames`. start: index of the initial choice. munk, mujoco: methods with labels. The first two methods
+    have the default and the documented settings. A string instead of an engine is the reason why the method is
+    missing. window: first and last frame that are played, or None for all frames. traces: points (body, point) whose
+    paths are drawn. centre: the body whose instant centre can be shown.
     """
 
     word: str
@@ -120,7 +121,7 @@ class Live(Look):
         return f"{self.scene.name}-{self.word}".replace(" ", "-")
 
     def places(self) -> Iterator[Scene]:
-        """Yield the scene at every position of its sliders; the last slider changes first."""
+        """Yield the scene at every position of its sliders. The last slider changes first."""
         fields = [slider.field for slider in self.sliders]
         for values in itertools.product(*(slider.values for slider in self.sliders)):
             changed: Any = dict(zip(fields, values, strict=True))
@@ -143,14 +144,16 @@ class Live(Look):
         }
 
     def located(self, given: Mapping[str, Any]) -> dict[str, int]:
-        """Return the indices of values. Raises KeyError for an unknown control, ValueError for an unknown value."""
+        """Return the index of each control's value. Raises KeyError for an unknown control, ValueError for an unknown
+        value."""
         controls = self.controls()
         return {name: controls[name].values.index(value) for name, value in given.items()}
 
     def stored(self) -> dict[tuple[Name, int], Motion]:
         """Return the motions of Python's engines, by engine and index of the method.
 
-        The page plays a stored motion if it cannot run the method, and otherwise shows the difference from it.
+        The page plays a stored motion if it cannot run the method. Otherwise it shows the difference from the stored
+        motion.
         """
         steps = self.steps[self.start]
         samples = self.samples(steps)
