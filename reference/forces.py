@@ -86,7 +86,7 @@ class Spring(_ForceOfTwo):
         return math.sqrt(self.stiffness * _inverse_mass(places, bodies))
 
     def fallback_length(self, span: float, is_guided: bool) -> float:
-        """The rest length, or the span if the rest length is zero. For a spring along a slot it is the extension at t =
+        """The rest length, or the span if the rest length is zero. For a spring along a slot, the extension at t =
         0."""
         if not is_guided:
             return self.rest_length or span

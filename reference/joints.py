@@ -45,8 +45,7 @@ class Body(Valid):
     """A rigid body in the plane, described at its centre of mass.
 
     mass [kg]; inertia [kg m^2] about the centre of mass; pose (x, y, angle) [m, m, rad] and twist (vx, vy, omega)
-    [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism for a mass or inertia that is not positive, or a number that is
-    not finite.
+    [m/s, m/s, rad/s] at t = 0. Raises InvalidMechanism unless mass and inertia are positive and all numbers finite.
     """
 
     name: Name
@@ -71,8 +70,7 @@ class _JointOfTwo(BetweenTwo, JointElement):
 class Pin(_JointOfTwo):
     """An ideal hinge (18.62): the point `first_point` of the first body and `second_point` of the second coincide.
 
-    Rows: velocity of the second point minus velocity of the first point, x then y. Reaction: force on the second body
-    [N].
+    Rows: velocity of the second point minus velocity of the first, x then y. Reaction: force on the second body [N].
     """
 
     size: ClassVar[int] = 2
@@ -249,8 +247,7 @@ class Gear(_JointOfTwo):
 
 @dataclass(frozen=True)
 class Weld(_JointOfTwo):
-    """A rigid connection: a point of the first body coincides with a point of the second body, and `angle` [rad] is the
-    second body's angle relative to the first body.
+    """A rigid connection: two points coincide, and the second body has the angle `angle` [rad] relative to the first.
 
     The relative angle is the difference of the poses' angles, not wrapped. Rows: velocity of the second point minus
     velocity of the first point, x then y, and omega of the second body minus omega of the first body. Reaction: force

@@ -143,8 +143,7 @@ class Mechanism(Valid):
     def potential(self, pose: States) -> NDArray[Any]:
         """Potential energy (...) [J] of gravity, springs, constant forces and torques at poses (..., bodies, 3).
 
-        It is zero if bodies are at the world's origin, springs have their rest length, and bodies with a torque have
-        equal angles.
+        Zero: bodies at the world's origin, springs at their rest length, bodies with a torque at equal angles.
         """
         of_gravity = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
         return of_gravity + self.applied.potential(pose) if self.forces else of_gravity
@@ -198,14 +197,12 @@ class Mechanism(Valid):
         gravity: Annotated[Numbers, of_shape(2)] | None = None,
         twist: Reals | None = None,
     ) -> NDArray[np.float64]:
-        """The joints' reactions (..., rows) [N, N m] from M a = f + J^T reaction, where f is gravity and force
-        elements.
+        """The joints' reactions (..., rows) [N, N m] from M a = f + J^T reaction with forces f without joints.
 
         pose, acceleration and twist are (..., bodies, 3); only dampers need the twist. By Newton's law an engine with
         this motion has applied these reactions. inertias (bodies, 3) [kg, kg, kg m^2] and gravity (2,) [m/s^2] are the
         mechanism's by default. With the engine's inertias a wrong mass in the engine changes the reactions even if the
-        motion is prescribed. NaN stands for an unknown inertia. For dependent rows the minimum-norm reactions are
-        returned.
+        motion is prescribed. An unknown inertia is NaN. Dependent rows get minimum-norm reactions.
         """
         inertias = self.inertias if inertias is None else np.where(np.isnan(inertias), self.inertias, inertias)
         falling = self.free_fall if gravity is None else np.append(gravity, 0.0)

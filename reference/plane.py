@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 AnyArray = NDArray[Any]
 
-# Imaginary step of complex-step derivatives. The square of the step is below the smallest double, so the derivative is
-# exact.
+# Imaginary step of derivatives, which are exact, since the square of the step is below the smallest double.
 COMPLEX_STEP = 1e-100
 
 

@@ -105,8 +105,7 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
 
 
 def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
-    """The solution without its component in the null space of rows^T, which has the smallest norm in units of
-    `size`."""
+    """The solution with the smallest norm in units of `size`, by removal of the null space of rows^T."""
     _, singular, right = np.linalg.svd(matrix, full_matrices=True)
     count = matrix.shape[-1]
     padded = np.zeros((*singular.shape[:-1], count))
@@ -153,8 +152,7 @@ class JointGroup:
 
 @dataclass(frozen=True)
 class JointRows:
-    """The velocity rows of all joints in the order of the joints; `bodies` and `count` are the numbers of bodies and
-    rows."""
+    """The velocity rows of all joints, in order; `bodies` and `count` are the numbers of bodies and rows."""
 
     groups: tuple[JointGroup, ...]
     bodies: int
@@ -222,8 +220,7 @@ class JointRows:
         return out[..., :-1, :].reshape((*leading, self.count, 3 * self.bodies))
 
     def velocities(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
-        """J v (..., rows) joint by joint, at the cost O(joints). The product with a dense J costs O(joints *
-        bodies)."""
+        """J v (..., rows) at the cost O(joints), compared with O(joints * bodies) for a dense J."""
         poses, twists = self.with_ground(pose), self.with_ground(twist)
         leading = np.broadcast_shapes(poses.shape[:-2], twists.shape[:-2])
         out = np.zeros((*leading, self.count), dtype=np.result_type(poses, twists, float))

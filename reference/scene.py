@@ -61,9 +61,8 @@ class NoMotion(InvalidMechanism):
 class Scene(Valid, ABC):
     """Base of scenes: frozen dataclasses whose fields are the only data of an experiment.
 
-    `name` is the scene's key, `source` is its place in the chapter, and `duration` [s] is the length of runs. Until
-    `horizon` [s] errors grow at most about linearly, so that convergence orders can be fitted. `max_durations` limits
-    `max_time`.
+    `name` is the scene's key, `source` its place in the chapter, and `duration` [s] the length of runs. Until `horizon`
+    [s] errors grow at most about linearly, so that convergence orders can be fitted. `max_durations` limits `max_time`.
     """
 
     name: ClassVar[str]
@@ -153,8 +152,7 @@ class Scene(Valid, ABC):
 
     @validated
     def branch_of(self, pose: Poses) -> NDArray[np.int_]:
-        """The branch (assembly mode) (...,) of poses (..., bodies, 3), which is +1 or -1, or 0 for scenes with one
-        branch.
+        """The branch (assembly mode) (...,) of poses (..., bodies, 3): +1 or -1, or 0 for scenes with one branch.
 
         Raises InvalidMechanism if the number of bodies is wrong.
         """

@@ -44,8 +44,7 @@ def coupled(*factors: float) -> Rows:
 
 
 def equalities(model: Any) -> list[Rows]:
-    """The rows of all equalities of a model of hinges and slides. An equality is a connect, or linear in joints or
-    tendons."""
+    """The rows of a model's equalities (connects, and linear ones of joints and tendons), for hinges and slides."""
 
     def factors(equality: int) -> Array:
         row = np.zeros(model.nv)

@@ -100,8 +100,7 @@ class Equations:
         return out
 
     def _held(self, q: Array, speed: Array, wanted: Array) -> Array:
-        """The speeds or accelerations with the smallest mass-weighted change for which the rows have the rates
-        `wanted`."""
+        """Speeds or accelerations with the smallest mass-weighted change that give the rows the rates `wanted`."""
         root = np.sqrt(self.inverse)
         rows = self._slopes(self._rows, q)
         return speed + root * np.linalg.lstsq(rows * root, wanted - rows @ speed, rcond=1e-11)[0]

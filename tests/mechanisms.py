@@ -41,8 +41,7 @@ def bar(
 
 
 def four_bar(crank_rate: float = 0.0, drive: float | None = None) -> Mechanism:
-    """The chapter's linkage at the start with B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0) and rates by (18.70),
-    (18.71)."""
+    """The chapter's linkage with B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0) and rates by (18.70), (18.71)."""
     b, c, d = (0.0, 0.4), (0.4, 0.8), (1.2, 0.0)
     bodies = (
         bar("crank", (0.0, 0.0), b, rate=crank_rate),

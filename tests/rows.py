@@ -66,8 +66,7 @@ def row_of(method: str, **changes: Any) -> Measurement:
 
 
 def falling(method: str, errors: Iterable[float], quantity: str = "angle", **changes: Any) -> list[Measurement]:
-    """A sweep with these errors at steps of 1e-1, 1e-2, 1e-3 s and so on, with a cost that increases as the step
-    decreases."""
+    """A sweep with these errors at steps of 1e-1, 1e-2, 1e-3 s and so on; smaller steps cost more."""
     return [
         row_of(method, **{"step": 10.0 ** -(i + 1), "every": 10**i, "cpu": 10.0 ** (i - 3), quantity: error, **changes})
         for i, error in enumerate(errors)

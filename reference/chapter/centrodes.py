@@ -45,8 +45,7 @@ def instant_centre(pose: States, twist: States) -> tuple[Array, Array]:
 
 @validated
 def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array:
-    """Distance (times,) [m] between the instant centres in two motions of a body, which expresses a velocity error as a
-    length.
+    """Distance (times,) [m] between the instant centres in two motions of a body, for velocity errors as lengths.
 
     Both trajectories must have the same times. NaN if either rotation rate vanishes; near such a time the distance
     grows without bound.
@@ -79,8 +78,7 @@ class Centrodes(Valid):
 
     @cached_property
     def space_curve(self) -> Traced:
-        """The fixed curve A with its material on the left, traversed in the direction in which the contact moves for
-        growing theta."""
+        """The fixed curve A with its material on the left, traversed as the contact moves for growing theta."""
         return Traced(self.theta, self.space)
 
     @cached_property
@@ -105,8 +103,7 @@ class Centrodes(Valid):
 
     @property
     def body_arc(self) -> Array:
-        """Arc length (n,) [m] of the contact on B in the direction of the contact's motion, which equals
-        `space_arc`."""
+        """Arc length (n,) [m] of the contact on B in its direction of motion, which equals `space_arc`."""
         return self.body_curve.limits[1] - self.body_curve.arc_of(-self.theta)
 
     @property

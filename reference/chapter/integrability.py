@@ -58,8 +58,7 @@ def exterior_derivatives(rows: Rows, place: Place) -> Array:
 
 @validated
 def obstruction(rows: Rows, place: Place) -> Array:
-    """dw_i(X_a, X_b) (rows, freedoms, freedoms) on a basis of allowed motions, which is zero everywhere iff
-    integrable."""
+    """dw_i(X_a, X_b) (rows, freedoms, freedoms) on a basis of allowed motions, zero everywhere iff integrable."""
     basis = null_space(rows(place))
     return np.einsum("ijk,ja,kb->iab", exterior_derivatives(rows, place), basis, basis)
 
@@ -72,8 +71,8 @@ def _neighbours(place: Place) -> list[Array]:
 
 @validated
 def is_integrable(rows: Rows, place: Place) -> bool:
-    """Whether dw_i(X_a, X_b) is zero at a place and in a neighbourhood. Raises InvalidMechanism if the rank changes
-    there."""
+    """Whether dw_i(X_a, X_b) is zero at and near a place. Raises InvalidMechanism if the rank changes near the
+    place."""
     places = _neighbours(place)
     ranks = {null_space(rows(near)).shape[1] for near in places}
     if len(ranks) > 1:
@@ -119,9 +118,8 @@ def growth(rows: Rows, place: Place) -> tuple[int, ...]:
     """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]] and so on at a place, until they no longer grow.
 
     The first number counts velocity freedoms, and the last number counts configuration freedoms. Examples are (1,) for
-    a pinned body,
-    (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular, since further brackets are
-    not counted if a bracket vanishes only at this place. A trailer at a right angle to its car is not regular.
+    a pinned body, (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular: no bracket
+    vanishes only there, as for a trailer at a right angle to its car.
     """
     generators = _fields(rows, np.asarray(place, dtype=float))
     basis = _extended_basis(np.zeros((len(place), 0)), [np.real(field(place)) for field in generators])

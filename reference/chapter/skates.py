@@ -43,8 +43,7 @@ def skate_of(row: BodyRow, body: str = "body") -> Skate | None:
 
 @validated
 def one_form(row: BodyRow) -> Callable[[NDArray[Any]], NDArray[Any]]:
-    """The row in the coordinates (x, y, theta) of the world, a function from places (..., 3) to rows (..., 1, 3);
-    analytic."""
+    """The row in world coordinates (x, y, theta): an analytic function from places (..., 3) to rows (..., 1, 3)."""
     a, b, c = row
 
     def rows(place: NDArray[Any]) -> NDArray[Any]:
@@ -67,8 +66,7 @@ def coriolis_factors(speed: float, rate: float, angular_acceleration: float = 0.
 
     The speed v [m/s] and the rate theta' [rad/s] are not zero. The skate's point moves at v along i' of its own body,
     and only i' rotates. A slider at the same position moves at v along i' of a rotating body: both i' and the arm
-    rotate, and the arm grows. Both factors are numerical derivatives of a velocity or a position, so that no formula is
-    assumed.
+    rotate, and the arm grows. Both factors are numerical derivatives, so that no formula is assumed.
     """
     if speed == 0 or rate == 0:
         raise InvalidMechanism(f"coriolis_factors: speed is {speed}, rate is {rate}; neither may be zero")

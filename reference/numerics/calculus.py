@@ -1,7 +1,6 @@
 """The integral of a function of time, accurate to rounding, and the derivative of an analytic function.
 
-Integrals are sums over adaptive panels with Chebyshev series. Derivatives are Cauchy integrals over a circle in the
-complex plane.
+Integrals are sums over adaptive panels with Chebyshev series. Derivatives are Cauchy integrals over a complex circle.
 """
 
 from __future__ import annotations

@@ -137,12 +137,10 @@ def integrate(
     tolerance: float = WINDOW_TOLERANCE,
     most: int = MOST_WINDOWS,
 ) -> CollocationMotion:
-    """Integrate from angles and rates (n,) at t = 0 to `until` [s]; `rate_unit` [rad/s] is the unit of rates in the
-    tolerance.
+    """Integrate from angles and rates (n,) at t = 0 to `until` [s]; `rate_unit` [rad/s] is the unit of rates.
 
     A window is accepted if its last Legendre coefficient and its last iteration change the rates by at most `tolerance`
-    times the sum of `rate_unit` and the largest rate. Raises IntegrationFailed for more than `most` windows, or a
-    window of length zero.
+    times the sum of `rate_unit` and the largest rate. Raises IntegrationFailed if windows vanish or exceed `most`.
     """
     rule = rule_of(stages)
     position, speed = (np.asarray(state, dtype=np.longdouble) for state in (angle, rate))
@@ -220,8 +218,7 @@ def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> A
 
 
 def bound(fine: NDArray[Any], coarse: NDArray[Any]) -> Array:
-    """A bound (times,) on the error of states (times, n): COARSER times the difference to a coarser rule, plus
-    rounding."""
+    """A bound (times,) on the error of states (times, n) from the difference to a coarser rule, plus rounding."""
     return (COARSER * (np.abs(fine - coarse) + np.finfo(float).eps * np.abs(fine))).max(axis=-1).astype(float)
 
 
@@ -235,8 +232,7 @@ def _solve_window(
     unit: float,
     tolerance: float,
 ) -> tuple[Extended | None, int]:
-    """The accelerations at the nodes (stages, n), or None for a window that is too long, and the number of
-    iterations."""
+    """The accelerations at the nodes (stages, n), None for a too long window, and the number of iterations."""
     straight = angle + length * rule.matrix.sum(axis=1)[:, None] * rate
     nodal, smallest = guess, math.inf
     for iteration in range(1, MOST_ITERATIONS + 1):
@@ -267,8 +263,7 @@ def _integrals(stages: int, part: Extended) -> tuple[Extended, Extended]:
 def _integrated(values: Extended) -> Extended:
     """The integrals (n, times) of Legendre polynomials (n + 1, times) or of their integrals, without the last degree.
 
-    On a step of length 1 the integral of P_n is (P_(n+1) - P_(n-1)) / (4 n + 2), and the integral of P_0 is (P_1 + P_0)
-    / 2.
+    On a step of length 1, P_n has the integral (P_(n+1) - P_(n-1)) / (4 n + 2), and P_0 the integral (P_1 + P_0) / 2.
     """
     degrees = np.arange(1, len(values) - 1, dtype=np.longdouble)[:, None]
     return np.concatenate([(values[:1] + values[1:2]) / 2, (values[2:] - values[:-2]) / (4 * degrees + 2)])

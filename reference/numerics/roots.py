@@ -43,8 +43,7 @@ def solve_increasing(
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             following: NDArray[Any] = x + missing / slope
             middle = 0.5 * (low + high)
-        # If the Newton step is not much shorter than the last step, bisect, since Newton's method may oscillate for
-        # ever.
+        # Bisect if the Newton step is not much shorter than the last step, since Newton's method may oscillate.
         shrinks = (np.abs(following - x) <= 0.75 * last_step) | ~np.isfinite(middle)
         newton = np.isfinite(following) & (following >= low) & (following <= high) & shrinks
         following = np.where(newton, following, middle)
@@ -113,8 +112,7 @@ def first_below(function: Function, knots: Array) -> tuple[float, int] | None:
 
 
 def _pieces(function: Function, knots: Array) -> list[tuple[float, float, Array, Array, float]]:
-    """The begin and end of intervals in order, with values at the points, series (functions, SERIES_DEGREE + 1) and
-    noise."""
+    """Begin and end of intervals, with values at the points, series (functions, SERIES_DEGREE + 1) and noise."""
     begin, end = knots[:-1], knots[1:]
     last_tail = np.full(len(begin), np.inf)
     pieces: list[tuple[float, float, Array, Array, float]] = []

@@ -168,8 +168,7 @@ class Cam(Curve):
 
     @cached_property
     def _bend_range(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """(radius of curvature, normal angle) at the minimum and maximum of the radius, from the roots of a
-        polynomial."""
+        """(radius of curvature, normal angle) at the radius's minimum and maximum, from roots of a polynomial."""
         k, cosines, sines = self._harmonics
         half = 0.5 * (1 - k**2) * 1j * k * (cosines - 1j * sines)
         polynomial = np.concatenate([half[::-1], [0.0], np.conj(half)])

@@ -61,8 +61,7 @@ SCAN = 721
 
 
 def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, end: float, side: int) -> float:
-    """The first arc of the body [m] in the direction `side` (+1, -1) at which the curves fit each other, or the `end`
-    [m].
+    """The first arc of the body [m] in the direction `side` (+1, -1) at which the curves fit, or the `end` [m].
 
     At the start, the arc `body_arc` touches the ground at `ground_arc` [m]. end: the last arc of the curves, or
     infinity.

@@ -114,8 +114,7 @@ class ByArc(Curve):
 
 
 def along(arc: ArrayLike) -> Array:
-    """Return arcs or angles as an array of floats; raise InvalidMechanism for other types. NaN is allowed, since it
-    occurs in root searches."""
+    """Return arcs or angles, which may be NaN, as an array of floats; raise InvalidMechanism for other types."""
     if type(arc) is np.ndarray and arc.dtype == np.float64:  # fast path for root searches
         return arc
     return validate("curve", "the place", arc, Numbers)
@@ -212,8 +211,7 @@ class Line(ByArc):
 
 @dataclass(frozen=True)
 class Side(ByArc):
-    """The lower side of a square about the origin with sides of `side` [m], traversed to +x with arcs from -side/2 to
-    side/2.
+    """The lower side of a square about the origin, traversed to +x; arcs are between -side/2 and side/2 [m].
 
     Arcs beyond the ends are refused, since the ends are corners of infinite curvature.
     """

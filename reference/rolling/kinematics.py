@@ -1,5 +1,4 @@
-"""Pose, velocity (18.66) and acceleration of a rigid curve that rolls on a fixed curve, as functions of the
-rotation."""
+"""Pose, velocity (18.66) and acceleration of a curve that rolls on a fixed curve, by the rotation."""
 
 from __future__ import annotations
 
@@ -75,8 +74,7 @@ class Rolling(Valid):
 
     @cached_property
     def _start_angles(self) -> tuple[float, float]:
-        """Tangent angles of ground and body at the start. The angles are not wrapped, and only changes of the angles
-        are used."""
+        """Tangent angles of ground and body at the start, not wrapped. Only changes of these angles are used."""
         return float(self.ground.angle(self.ground_arc)), float(self.body.angle_of(self._body_start))
 
     @cached_property
@@ -96,8 +94,7 @@ class Rolling(Valid):
         return arc
 
     def _rotation(self, body_parameter: Array) -> tuple[Array, Array]:
-        """-(theta - start) (...) and its derivative by the body's parameter, which is positive if rolling is
-        possible."""
+        """-(theta - start) (...) and its derivative by the body's parameter, positive if rolling is possible."""
         ground = self.ground.parameter(self._ground_arc(self.body.arc_of(body_parameter)))
         ground_start, body_start = self._start_angles
         turned = (self.ground.angle_of(ground) - ground_start) - (self.body.angle_of(body_parameter) - body_start)

@@ -17,8 +17,7 @@ from reference.rolling.curves import Array, Curve, along, within
 from reference.validators import of_shape
 
 SPLINE_DEGREE = 7
-# Minimum number of points of a curve. The number is more than twice the degree, so that a spline through half of the
-# points shows the error.
+# Minimum number of points of a curve, so that a spline through half of the points can show the error.
 FEWEST = 16
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 # Smallest speed along the curve, relative to the mean speed, at which the tangent is determined.

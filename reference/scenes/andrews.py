@@ -43,8 +43,8 @@ class Andrews(PlacedScene):
     Lengths [m] in the test set's letters are `crank` (rr, ra), `rod` (d, da), `bar` (ss, sa, sb), `spring_point` (sc,
     sd), `upper` (zt, ta, tb), `upper_end` (e, ea), `lower` (u, ua, ub) and `lower_end` (zf, fa). Each field but
     `spring_point` has the length between two joints and then the position of the centre of mass. The spring has
-    `stiffness` [N/m] and `rest_length` [m]. The crank has a constant `torque` [N m]. There is no gravity. Raises
-    InvalidMechanism if the bars can't be assembled at the start.
+    `stiffness` [N/m] and `rest_length` [m], and the crank a constant `torque` [N m]. Raises InvalidMechanism if the
+    bars can't be assembled at the start.
     """
 
     name: ClassVar[str] = "andrews"
@@ -276,8 +276,7 @@ class Dyad(Valid):
     side: Sign
 
     def angles(self, reach: Moving) -> tuple[Moving, Moving]:
-        """Directions of both bars [rad], between -pi and pi, for the complex vector `reach` [m] from the pivot to the
-        point.
+        """Directions of both bars [rad], from -pi to pi, for the complex vector `reach` [m] from pivot to point.
 
         The result is NaN for points out of reach. With reach = a e^(i mu) + b e^(i nu), the component of the derivative
         along one bar depends only on the rotation of the other bar.

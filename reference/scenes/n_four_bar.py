@@ -29,8 +29,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NFourBar(Scene):
-    """`loops` is N. `length` [m] is the length of every bar and the distance of the pivots, and `mass` [kg] the mass of
-    every bar.
+    """`loops` is N. Every bar has `length` [m] and `mass` [kg], and pivots have the distance `length`.
 
     The motion starts upright; the cranks' tops move at `speed` [m/s] to +x. Bodies: cranks 0..N, then couplers 0..N-1.
     """
@@ -61,8 +60,7 @@ class NFourBar(Scene):
 
     @validated
     def singular_times(self, until: NonNegative) -> Array:
-        """The times in [0, until] s at which the cranks are parallel to the couplers, where the rows leave N + 1
-        freedoms."""
+        """The times [s] in [0, until] at which the cranks are parallel to the couplers."""
         if not self.speed:
             return np.zeros(0)
         sides = [self.pendulum.passages(side * math.pi / 2, until) for side in (1, -1)]
@@ -104,8 +102,7 @@ class NFourBar(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         require_room(f"scene {self.name!r}: a trajectory", (len(times), 2 * self.loops + 1, 3))
-        # A chain at rest stays at the top. `Pendulum` would fall, since the double nearest to pi is not exactly the
-        # top.
+        # A chain at rest stays at the top. `Pendulum` would fall, since no double is exactly pi.
         zero = np.zeros(len(times))
         angle, rate, acceleration = self.pendulum.motion(times) if self.speed else (zero + math.pi, zero, zero)
         pose, twist, _ = self._placement(angle, rate, acceleration)
@@ -113,12 +110,11 @@ class NFourBar(Scene):
 
     @validated
     def forces(self, angle: Array, rate: Array, acceleration: Array) -> Array:
-        """The reactions (times, rows) [N] in closed form, which is accurate also for large forces near a singular
-        position.
+        """The reactions (times, rows) [N] in closed form, accurate also near a singular position.
 
         A coupler that doesn't rotate has equal vertical forces at its ends. A crank's balance of moments about the
-        pivot gives the horizontal force on the crank's top. The balance of forces of each coupler gives the force on
-        the next crank.
+        pivot gives the horizontal force on the crank's top. Each coupler's balance of forces gives the force on the
+        next crank.
         """
         n, m, size = self.loops, self.mass, self.length
         _, _, moving = self._placement(angle, rate, acceleration)

@@ -51,9 +51,8 @@ SHANK_AND_FOOT = Segment(0.061, 0.246, 0.606, 0.416)
 class OneFoot(EmbeddedScene):
     """A person who stands on the left foot, with `mass` [kg], `height` [m] and gravity [m/s^2].
 
-    The motion starts from rest. Angles [rad] are counter-clockwise. The angles `left_shank`, `left_thigh` and `trunk`
-    are from the upward vertical. The lifted leg's angles `right_thigh` and `right_shank` are from the downward
-    vertical.
+    The motion starts from rest. Angles [rad] are counter-clockwise. `left_shank`, `left_thigh` and `trunk` are from the
+    upward vertical, `right_thigh` and `right_shank` (lifted leg) from the downward vertical.
     """
 
     name: ClassVar[str] = "person_one_foot"
@@ -153,12 +152,10 @@ class OneFoot(EmbeddedScene):
 
 @dataclass(frozen=True)
 class TwoFeet(OneFoot):
-    """A person who stands on both feet, with `stance` [m] between the ankles. The loop through the ground has three
-    freedoms.
+    """A person on both feet, with `stance` [m] between the ankles. The loop through the ground has three freedoms.
 
-    The start is defined by the hip's position (`hip_x`, `hip_y`) [m] relative to the left ankle, and by the trunk's
-    angle. Both knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of
-    reach.
+    The start is given by the hip's position (`hip_x`, `hip_y`) [m] from the left ankle and the trunk's angle. Both
+    knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of reach.
     """
 
     name: ClassVar[str] = "person_two_feet"
@@ -241,8 +238,7 @@ class TwoFeet(OneFoot):
 
 @dataclass(frozen=True)
 class SwayingOnOneFoot(OneFoot):
-    """A person upright on one foot, with the lifted leg rotated by 0.1 rad. The start has the shape of the mode of 9.3
-    rad/s.
+    """A person upright on one foot, with the lifted leg rotated by 0.1 rad, in the shape of the mode of 9.3 rad/s.
 
     The horizon is the time in which the unstable mode of the knee increases a difference tenfold.
     """

@@ -2,8 +2,7 @@
 
 The skate's speed u along i' and the turning rate w satisfy u' = a w^2 and (I + m a^2) w' = -m a u w, where the centre
 of mass is at a ahead of the skate (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m the
-energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant. The solution is u = V tanh p and w = (V/k) sech p with p = c + a V
-t/k^2.
+energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant. Then u = V tanh p and w = (V/k) sech p, p = c + a V t/k^2.
 """
 
 from __future__ import annotations
@@ -230,8 +229,7 @@ class ChaplyginSleigh(Scene):
 
 @dataclass(frozen=True)
 class SleighBackwards(ChaplyginSleigh):
-    """A sleigh with the centre of mass behind the skate. A small turning rate grows until the sleigh has turned
-    round."""
+    """A sleigh with the centre of mass behind the skate: a small turning rate grows until it has turned round."""
 
     name: ClassVar[str] = "sleigh_backwards"
 
@@ -284,8 +282,7 @@ class SkateOnSlope(Scene):
         """x and y of the blade [m], the integrals of u cos theta and u sin theta."""
         first, rate, pull = self.heading, self.turning_rate, self.gravity
         if abs(rate) * float(t.max(initial=0.0)) < 1:
-            # The closed form divides by the rate's square. For a rotation of less than a radian Gauss quadrature is
-            # exact to rounding.
+            # The closed form divides by the rate's square. Within a radian, Gauss quadrature is exact.
             nodes, weights = np.polynomial.legendre.leggauss(12)
             when = 0.5 * t[..., None] * (1 + nodes)
             angle, half = first + rate * when, 0.5 * rate * when

@@ -1,5 +1,4 @@
-"""The slider-crank in closed form, with scenes of a driven crank, of a free crank, and two scenes in which methods
-fail.
+"""The slider-crank in closed form, with scenes of a driven and a free crank, and scenes in which methods fail.
 
 The crank turns about the origin; the slider moves along the line y = offset. With crank r, rod l, offset e and crank
 angle theta, the rod's angle beta satisfies r sin(theta) + l sin(beta) = e. The slider is at x = r cos(theta) + l
@@ -227,8 +226,7 @@ class RodEndInSlot(DrivenSliderCrank):
 class SliderAtDeadCentre(FreeSliderCrank):
     """The slider-crank released at rest near the outer dead centre, under gravity along the slot.
 
-    The slider-crank would stay at rest at the dead centre. `angle` [rad] determines when and in which direction the
-    motion begins.
+    At the dead centre it would stay at rest. `angle` [rad] determines when and in which direction it moves.
     """
 
     name: ClassVar[str] = "slider_at_dead_centre"
@@ -248,8 +246,7 @@ class SliderAtDeadCentre(FreeSliderCrank):
 
 @dataclass(frozen=True)
 class SlottedLever(PlacedScene):
-    """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; the crank's pin slides in a straight slot of the
-    lever.
+    """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; the crank's pin slides in a slot of the lever.
 
     Lengths `crank` and `lever` [m]; the lever's pivot is at (-distance, 0) [m]; masses of uniform bars [kg]; gravity
     [m/s^2] downwards. The slot begins at the lever's pivot, at the angle `slant` [rad] to the lever's bar, so that the

@@ -172,8 +172,7 @@ def swing(frequency: Any, start: Any, rate: Any, t: Any) -> list[Any]:
 
 
 def drawn_pendulum(rng: np.random.Generator) -> tuple[float, ...]:
-    """Random pendulums at times up to 100 radians of phase; half of the pendulums are near the separatrix or an
-    equilibrium."""
+    """Random pendulums at times up to 100 radians of phase, often near the separatrix or an equilibrium."""
     frequency, start = decades(rng), angle(rng, (0.0, math.pi, -math.pi))
     start = math.remainder(start, 2 * math.pi)
     rate = 2 * frequency * float(rng.normal())

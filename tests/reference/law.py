@@ -30,8 +30,7 @@ class Law:
     """A formula in double precision (`ours`) and in fifty digits (`exact`), with the same arguments and results.
 
     vectors: slices of values that are the components of one vector. angles: indices of values that are compared up to
-    whole turns. size: a function that returns the magnitudes whose rounding is allowed; the default magnitudes are the
-    values.
+    whole turns. size: returns magnitudes whose rounding is allowed instead of the values'.
     """
 
     name: str

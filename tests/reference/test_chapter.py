@@ -29,14 +29,12 @@ from reference.trajectory import Trajectory
 from tests.present import present
 
 LINKAGE = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
-# The coupler's rotation rate vanishes at theta = 2.8006 and 5.9406 rad. No interval of the test contains one of these
-# angles.
+# Intervals without theta = 2.8006 and 5.9406 rad, where the coupler's rotation rate vanishes.
 ARCS = {"coupler backward": (0.6, 2.4), "coupler forward": (3.5, 5.5)}
 
 
 def coupler(low, high, count, rate=10.0):
-    """Times, poses and twists of the coupler at a constant crank rate [rad/s]; B is the origin of the coupler's
-    frame."""
+    """Times, poses and twists of the coupler, from its end B, at a constant crank rate [rad/s]."""
     theta = np.linspace(low, high, count)
     beta, _ = LINKAGE.angles(theta)
     beta_rate, _ = LINKAGE.rates(theta, rate)

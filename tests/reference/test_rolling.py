@@ -223,8 +223,7 @@ def test_the_horizon_of_a_rolling_scene_ends_at_the_first_slip_or_hop():
 def test_frequencies_of_small_oscillations_agree_with_closed_forms():
     a, b = 0.5, 0.3
     flat = RollingEllipse().motion_law
-    # Stiffness: The stiffness is (radius of curvature at the flat side - height of the centre) m g; the inertia is
-    # about the contact.
+    # The stiffness is (radius of curvature at the flat side - height of the centre) m g.
     assert flat.small_frequency(0.0) ** 2 == pytest.approx(GRAVITY * (a * a / b - b) / ((a * a + b * b) / 4 + b * b))
     centred = RollingDisc(start_angle=-1.3)
     rest, near = math.pi / 2, 0.4 - 0.15
@@ -235,8 +234,7 @@ def test_frequencies_of_small_oscillations_agree_with_closed_forms():
 
 
 def watched(scene, looks=4001):
-    """The sampling intervals in which the contact first has to pull and in which it first needs more than its
-    friction."""
+    """The sampling intervals in which the contact first has to pull, and first needs more friction than it has."""
     t = np.linspace(0, scene.duration, looks)
     tangent, normal = scene.motion_law.forces(t)
     rounding = 1e-11 * (1 + scene.friction) * np.abs([tangent, normal]).max()

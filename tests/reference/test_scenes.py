@@ -158,8 +158,7 @@ def test_a_scenes_reactions_satisfy_newtons_law(each: Scene) -> None:
 
 
 def told(each: Scene, t: np.ndarray) -> np.ndarray | None:
-    """The accelerations from which the scene computes its reactions, or None if the scene does not use
-    accelerations."""
+    """The accelerations from which the scene computes its reactions, or None without such accelerations."""
     if isinstance(each, FourBarScene):
         return each._bodies(each._angles(t))[2]  # pyright: ignore[reportAttributeAccessIssue]
     return each.placement(t)[2] if isinstance(each, PlacedScene) else None

@@ -10,8 +10,7 @@ PYPROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
 
 
 def lower_bounds(text: str) -> list[str]:
-    """'name==version' of every dependency of the project and its extra `test`. Raises ValueError for a missing
-    bound."""
+    """'name==version' of the dependencies and of the extra `test`. Raises ValueError for a missing bound."""
     project = tomllib.loads(text)["project"]
     out = []
     for requirement in (*project["dependencies"], *project["optional-dependencies"]["test"]):

@@ -80,8 +80,7 @@ Their engine reaches {{ best("turning_wheel", "multipliers", "closed").angle | n
 {% endblock %}
 """
 THEIR_METHODS = ("multipliers default", "multipliers closed")
-# The program runs several commands in one interpreter, since each start takes longer than a command. The program prints
-# each command's status in a line.
+# This program runs several commands, since each start takes longer than a command, and prints their statuses.
 COMMANDS_IN_ONE_PROCESS = """
 import json, sys
 from reports.cli.commands import invoke

@@ -12,8 +12,7 @@ import pytest
 from tests import ROOT
 from tests.tools.lower_bounds import PYPROJECT, lower_bounds
 
-# This program removes features that Windows lacks. Worker processes import this program first, so they lack the
-# features too.
+# This program, which worker processes import too, removes features that Windows lacks.
 SCRIPT_WITHOUT_UNIX = """
 import multiprocessing
 import os

@@ -115,8 +115,7 @@ def test_every_cell_runs_and_its_claims_about_engines_are_right(lecture):
     assert plateau.min() > plateau.max() / 2
     assert module.swept["mujoco default"][-1] < plateau[-1]
     assert module.swept["mujoco tuned"][0] < plateau[2]
-    # Two errors cancel at a step of 1 ms. At smaller steps the error is ten times larger, which is the plateau of the
-    # soft joint.
+    # Two errors cancel at a step of 1 ms. At smaller steps the soft joint's error is ten times larger.
     errors = dict(zip(module.fine, module.lucky["default"], strict=True))
     assert errors[100] * 10 < errors[1000] < module.lucky["RK4"][-1] < 1.2 * errors[1000]
     assert module.astray > 1

@@ -1,5 +1,4 @@
-"""Wrong models: an engine simulates a mechanism with one wrong number, and the results are compared with the right
-scene.
+"""Wrong models: an engine simulates a mechanism with one wrong number, and is compared with the right scene.
 
 Mistakes in adapters have this effect. The second half tests whether the grid's gates notice a wrong model. Right and
 wrong models are run at the same steps, from coarse to fine.
@@ -34,8 +33,7 @@ from reports.search.planted import Misbuilt
 Some = TypeVar("Some")
 
 NUMBER_KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
-# Number of bodies or joints up to which all of them are changed. In longer mechanisms only the first, middle and last
-# body or joint is changed.
+# In mechanisms with more bodies or joints, only the first, middle and last body or joint is changed.
 MOST_TRIED = 6
 
 
@@ -48,8 +46,7 @@ class Mistake:
     mass, inertia: a body's value times 1 + r. length: the positions of all joints of a body, times 1 + r. gravity:
     gravity times 1 + r, or r L / T^2 downwards if gravity is zero. point: a joint's point, moved by r L. angle: the
     angle of a skate's blade, a slot's line, a drive's start or a rolling curve, plus r. size: the size of a rolling
-    curve, times 1 + r. rate: a drive's rate, or all rates of the start if nothing is driven, times 1 + r, or r / T if
-    zero.
+    curve, times 1 + r. rate: a drive's rate, or the start's rates without a drive, times 1 + r, or r / T if zero.
     """
 
     kind: str

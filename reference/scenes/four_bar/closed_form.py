@@ -21,8 +21,7 @@ ANGLE_ROUNDINGS = 16
 
 
 class Kinematics(NamedTuple):
-    """Angles [rad], rates [rad/s] and accelerations [rad/s^2] of coupler and rocker, with the shape of the
-    arguments."""
+    """Angles [rad], rates [rad/s] and accelerations [rad/s^2] of coupler and rocker, shaped like the arguments."""
 
     beta: Any
     phi: Any
@@ -52,9 +51,8 @@ class Constants:
     """Constants of the closed form for lengths l1, l2, l3 [m] and the ground vector A -> D of length d [m].
 
     heading [rad] is the direction of A -> D. outer_near and outer_far are U at theta' = 0 and pi, inner_near and
-    inner_far are W at theta' = 0 and pi. If outer_far is negative, B can't reach the largest distance from D. If
-    inner_near is negative, B can't reach the smallest distance. The loop has no position if outer_near or inner_far is
-    negative.
+    inner_far are W at theta' = 0 and pi. B can't reach its largest distance from D if outer_far < 0, and its smallest
+    distance if inner_near < 0. The loop has no position if outer_near < 0 or inner_far < 0.
     """
 
     l1: float
@@ -83,8 +81,8 @@ class Constants:
         )
 
     def crank_limits(self) -> tuple[Interval, ...] | None:
-        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns, or None if it always
-        closes."""
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns, or None for all
+        theta."""
         # U or W is zero at theta' = 2 atan(sqrt(ratio)).
         outer = 2 * math.atan2(math.sqrt(self.outer_near), math.sqrt(-self.outer_far)) if self.outer_far < 0 else None
         inner = 2 * math.atan2(math.sqrt(-self.inner_near), math.sqrt(self.inner_far)) if self.inner_near < 0 else None

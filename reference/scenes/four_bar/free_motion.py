@@ -47,8 +47,7 @@ class CurveMotion(Valid):
 
     @validated
     def start(self, theta: float, theta_dot: float, branch: Sign) -> Any:
-        """The state (theta, beta, phi, u) at a crank angle [rad] and crank rate [rad/s]; Unreachable,
-        InvalidMechanism."""
+        """The state (theta, beta, phi, u) at an angle [rad] and rate [rad/s] of the crank."""
         beta, phi = self.four_bar.angles(theta, branch)
         angle = self._closed(np.array([theta, beta, phi], dtype=np.longdouble))
         along = self._direction(angle)[0]
@@ -87,8 +86,7 @@ class CurveMotion(Valid):
 
         root = np.sqrt(self._inertia(start[:3], self._direction(start[:3]))) / largest
         state = np.append(unit * start[:3], start[3] * root)
-        # The integrator is for second-order equations. The state is used as the velocity; the positions of the
-        # integrator are not used.
+        # The integrator is for second-order equations. The state is its velocity; its positions are not used.
         solution = gauss.integrate(slopes, np.zeros(4), state, until, float(unit), stages, CURVE_TOLERANCE)
 
         def states(times: Array) -> Any:
@@ -138,8 +136,7 @@ class CurveMotion(Valid):
 
     @property
     def _bar_inertias(self) -> Any:
-        """The bars' inertias (3,) [kg m^2] about their fixed ends; the crank's inertia includes the coupler's mass at
-        the crank's end."""
+        """Inertias (3,) [kg m^2] of the bars about their fixed ends; the crank carries the coupler's mass."""
         m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
         lengths = np.array(self.four_bar.lengths, dtype=np.longdouble)
         return lengths**2 * np.array([m1 / 3 + m2, m2 / 3, m3 / 3])

@@ -97,8 +97,7 @@ def _cross(first: Any, second: Any) -> Any:
 
 # The chapter's pseudocode, which integrates the printed rates, is a method under test and no reference. The method does
 # not correct the closure of the loop, so errors of the angles accumulate. With the default tolerance of common packages
-# (rtol 1e-3) the coupler's angle has an error of 0.02 rad after one revolution and of 1 rad after a hundred
-# revolutions.
+# (rtol 1e-3) the coupler's angle has an error of 0.02 rad after 1 and of 1 rad after 100 revolutions.
 
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
 # The stages' nodes, as fractions of the step, for methods with a fixed step.
@@ -222,8 +221,7 @@ class FourBar(Valid):
     angle is Unreachable, and the angles of coupler and rocker jump by pi there.
 
     Raises InvalidMechanism for lengths that are not positive, D on A, or bars that can't be assembled at any crank
-    angle. Methods raise Unreachable, and ValueError for a crank angle that is not finite or a branch other than +1 or
-    -1.
+    angle. Methods raise Unreachable, and ValueError for a crank angle that is not finite or a wrong branch.
     """
 
     crank: Positive
@@ -308,8 +306,8 @@ class FourBar(Valid):
         )
 
     def crank_limits(self) -> tuple[Interval, ...] | None:
-        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns, or None if it always
-        closes."""
+        """The intervals (low, high) of theta [rad] in which the loop closes, up to whole turns, or None for all
+        theta."""
         return self._constants.crank_limits()
 
     def grashof(self) -> str:
@@ -351,7 +349,6 @@ class FourBar(Valid):
         branch: Sign = 1,
         **settings: Any,
     ) -> RateIntegration:
-        """The motion by the chapter's pseudocode, which is a method under test. `integrate_rates` explains the
-        settings."""
+        """The motion by the chapter's pseudocode, a method under test, with the settings of `integrate_rates`."""
         beta, phi = self.angles(theta, branch)
         return integrate_rates(self.lengths, (theta, float(beta), float(phi)), theta_dot, np.asarray(t), **settings)

@@ -42,8 +42,7 @@ UNEVEN = 10.0
 # Number of steps of iterative refinement. Each step multiplies the error by about the relative error of the first
 # solution, so three steps suffice up to a ratio of 1e9.
 MAX_REFINEMENTS = 3
-# Relative correction below which the refinement ends. The square of this number is below the rounding of extended
-# precision.
+# Relative correction below which the refinement ends; its square is below the rounding of extended precision.
 CORRECTED = 3e-10
 
 
@@ -52,8 +51,7 @@ Motion = Callable[[ArrayLike], Array]
 # Number of links up to which collocation is faster than the explicit method, since numpy calls cost more than their
 # arithmetic.
 FEW_LINKS = 20
-# Difference of starts [rad] whose growth is measured. The difference is small compared with a swing and large compared
-# with rounding.
+# Difference of starts [rad] whose growth is measured, small against a swing and large against rounding.
 PERTURBATION = 1e-6
 # Factor by which a difference grows until the horizon.
 TENFOLD = 10.0
@@ -147,8 +145,7 @@ class Chain(Valid):
         return forces
 
     def _residual(self, angle: Array, rate: Array) -> Callable[[Any], Any]:
-        """A function from forces (..., links, 2) to relative accelerations at the joints [m/s^2] in extended
-        precision."""
+        """A function from forces (..., links, 2) to relative accelerations at the joints [m/s^2]."""
         half = self._length[:, None] / np.longdouble(2) * direction_of(np.asarray(angle, dtype=np.longdouble))
         normal = perpendicular(half)
         centripetal = rotation_acceleration(np.asarray(rate, dtype=np.longdouble), np.zeros_like(half[..., 0]), half)
@@ -311,8 +308,7 @@ class Chain(Valid):
 
     @validated
     def truth_error(self, angle: ArrayLike, rate: ArrayLike, t: Times) -> Array:
-        """A bound (times,) on the error of the integrated motion [rad, rad/s], from the difference to a tolerance 10
-        times larger.
+        """A bound (times,) on the error of the motion [rad, rad/s], from the difference to a tenfold tolerance.
 
         For collocation the bound is ten times the difference plus rounding, since both tolerances are near rounding.
         """

@@ -124,8 +124,7 @@ class Pendulum(Valid):
 
     @cached_property
     def _start(self) -> tuple[float, float, float, float, float]:
-        """(direction, whole turns, s, c, p) of the start after reflection to a positive rate; s and c are of the angle
-        without whole turns."""
+        """(direction, whole turns, s, c, p) of the start, mirrored to a positive rate and without whole turns."""
         direction = -1.0 if self.rate < 0 else 1.0
         rest = math.remainder(self.angle, 2 * math.pi)
         turns = round((self.angle - rest) / (2 * math.pi))
@@ -134,8 +133,7 @@ class Pendulum(Valid):
 
     @cached_property
     def excess(self) -> float:
-        """k^2 - 1 = (p - c)(p + c) [1], which is negative for swinging, positive for whirling and zero on the
-        separatrix."""
+        """k^2 - 1 = (p - c)(p + c) [1], negative for swinging, positive for whirling, zero on the separatrix."""
         _, _, _, cosine, p = self._start
         return (p - cosine) * (p + cosine)
 
@@ -280,7 +278,6 @@ class PointPendulum(BarPendulum):
 
     @validated
     def bob(self, pose: Poses) -> Array:
-        """Position (..., 2) [m] of the point mass for poses (..., 1, 3). Its distance from the pin is 2/3 of the
-        bar."""
+        """Position (..., 2) [m] of the point mass, at 2/3 of the bar, for poses (..., 1, 3)."""
         angle = pose[..., 0, 2] + math.pi / 2
         return pose[..., 0, :2] + (2 / 3 - 1 / 2) * self.length * direction_of(angle)

@@ -121,8 +121,7 @@ class OpenChain(Mechanism):
     def reactions_of(
         self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Reactions (..., rows) [N]: that of pin i is the sum of mass times acceleration of all bodies below the
-        pin."""
+        """Reactions (..., rows) [N]: a pin carries the sum of mass times acceleration of all bodies below."""
         momentum_rates = inertias[:, :2] * excess[..., :2]
         sums = np.flip(np.cumsum(np.flip(momentum_rates, axis=-2), axis=-2), axis=-2)
         return sums.reshape((*sums.shape[:-2], self.row_count))

@@ -74,8 +74,7 @@ class RollingBody(Valid):
 
     @cached_property
     def _beyond(self) -> list[float]:
-        """The rotation [rad] of the integrator's stage that is farthest beyond the limits, or an empty list without
-        such a stage."""
+        """The rotation [rad] farthest beyond the limits in a stage of the integrator, or an empty list."""
         return []
 
     @contextmanager
@@ -90,8 +89,7 @@ class RollingBody(Valid):
 
     @cached_readonly
     def _units(self) -> Array:
-        """The units of theta and theta'. The tolerance of theta' must not be below the rate that rounding of the start
-        angle causes near an equilibrium."""
+        """The units of theta and theta'. Near an equilibrium, rounding of the start angle limits the accuracy."""
         uncertain = np.finfo(float).eps * self._pace_of_rest / gauss.WINDOW_TOLERANCE
         return np.maximum(units_of_motion(self._rates, self.start), [0.0, uncertain])
 
@@ -145,8 +143,7 @@ class RollingBody(Valid):
 
     @validated
     def slip(self, friction: Positive, until: Positive) -> float | None:
-        """The first instant [s] before `until` at which |T| exceeds friction * N, or None. A slip is not later than a
-        hop."""
+        """The first instant [s] before `until` at which |T| exceeds friction * N, a hop included, or None."""
         return self._first(((-1.0, friction), (1.0, friction)), until)
 
     def _first(self, parts: Sequence[tuple[float, float]], until: float) -> float | None:
@@ -205,8 +202,7 @@ class RollingBody(Valid):
 
     @validated
     def small_frequency(self, equilibrium: float) -> float:
-        """The rate sqrt(V'' / M) [rad/s] of small oscillations. Raises InvalidMechanism if the equilibrium is
-        unstable."""
+        """The rate sqrt(V'' / M) [rad/s] of small oscillations. Raises InvalidMechanism unless stable."""
         stiffness = float(self.stiffness(equilibrium))
         if not stiffness > 0:
             raise InvalidMechanism(

@@ -25,8 +25,7 @@ from reference.validators import from_to, of_shape
 
 @dataclass(frozen=True)
 class EllipticGears(Scene):
-    """The first gear turns at a constant rate about its focus at the origin; the second gear turns about its focus at
-    (2a, 0).
+    """The first gear turns at a constant rate about a focus at the origin, the second gear about a focus at (2a, 0).
 
     The distances from the contact to the two pins add up to 2a, so the contact is on the line of the pins. The angles
     satisfy tan(theta_2 / 2) = -(1 + e) / (1 - e) tan(theta_1 / 2). The ratio of the rates varies between (1 + e) / (1 -
@@ -49,8 +48,7 @@ class EllipticGears(Scene):
 
     @property
     def samples(self) -> int:
-        """A fifth of the usual number, since a contact of two ellipses costs ten times as much as a contact of
-        circles."""
+        """A fifth of the usual number, since contacts of ellipses cost ten times as much as those of circles."""
         return max(1, super().samples // 5)
 
     @property

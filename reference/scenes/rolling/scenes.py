@@ -182,8 +182,7 @@ class RollingInRing(RollingEllipse):
 
     @property
     def samples(self) -> int:
-        """Half of the usual number, since a contact of two curved boundaries costs several times as much as on flat
-        ground."""
+        """Half of the usual number, since contacts on curved ground cost several times as much."""
         return max(1, super().samples // 2)
 
     def ground_curve(self) -> Curve:

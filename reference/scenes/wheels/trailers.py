@@ -66,15 +66,13 @@ class Tow(Valid):
         """psi [rad, not wrapped] after the hitch has moved by the distance s (...) [m]; backwards s is negative."""
         distance = np.asarray(distance, dtype=float)
         across, along = self._half_angle_vector(distance)
-        # The angle of (q, p) is psi / 2, and it is monotonic. This angle is always below pi if the discriminant is not
-        # negative.
+        # The angle of (q, p) is psi / 2. It is monotonic, and below pi if the discriminant is not negative.
         half_turns = np.round(self._rate * distance / math.pi) if self._discriminant < 0 else 0.0
         return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
 
     @cached_property
     def _rate(self) -> float:
-        """The mean rate of the angle of (q, p) [rad/m] for a negative discriminant, for which the wheel turns without
-        end."""
+        """The mean rate of the angle of (q, p) [rad/m], if the discriminant is negative and the wheel turns on."""
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
     def _remainder(self, distance: Array) -> Array:
@@ -137,8 +135,7 @@ class Tow(Valid):
 
 @validated
 def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Positive) -> tuple[Any, Any]:
-    """Speed [m/s] and turning rate [rad/s] of a trailer's axle from those of the axle ahead and the joint angle `bend`
-    [rad]."""
+    """Speed [m/s] and turning rate [rad/s] of a trailer's axle from the axle ahead and the joint angle `bend` [rad]."""
     cosine, sine = np.cos(bend), np.sin(bend)
     return v * cosine + hitch * w * sine, (v * sine - hitch * w * cosine) / length
 
@@ -190,8 +187,7 @@ class CarWithTrailers(Valid):
     def axle_rates(
         self, headings: Annotated[Complexes, of_shape("...", "vehicles")], speed: Complexes, turning_rate: Complexes
     ) -> tuple[Any, Any]:
-        """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles), from speed and turning
-        rate of the car."""
+        """Speeds and turning rates (..., vehicles) of all axles at headings (..., vehicles)."""
         headings = np.asarray(headings)
         speeds, rates = [speed], [turning_rate]
         for index, (length, hitch) in enumerate(zip(self.lengths, self.hitches, strict=True)):

@@ -79,8 +79,7 @@ class CarAndTrailer(Scene):
 
     @cached_property
     def _tow(self) -> tuple[Tow, float, float]:
-        """The drawbar, the hitch's path length per metre of the rear axle's path, and the offset [rad] of the trailer's
-        heading."""
+        """The drawbar, the hitch's path per metre of the rear axle's path, and the offset of the heading [rad]."""
         pace = math.hypot(1.0, self.hitch * self.curvature)
         direction = self.pose[2] - math.atan(self.hitch * self.curvature)
         heading = self.pose[2] + self.bend
@@ -181,16 +180,14 @@ Input = float | Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Casters(Valid):
-    """Casters of one trail [m] with kingpins at `places` (x ahead, y to the left) [m] from the middle of the fixed
-    axle."""
+    """Casters with one trail [m] and kingpins at `places` (ahead, left) [m] from the middle of the fixed axle."""
 
     places: tuple[Vector, ...]
     trail: Positive
 
     @validated
     def turning_rates(self, angles: Complexes, speed: Complexes, turning_rate: Complexes) -> Any:
-        """The casters' rotation rates w + beta' (..., casters) [rad/s] in the world, at angles beta (..., casters)
-        [rad]."""
+        """The casters' rates w + beta' (..., casters) [rad/s] in the world, at angles beta (..., casters) [rad]."""
         x, y = np.array(self.places, dtype=float).T
         speed, turning_rate = np.asarray(speed)[..., None], np.asarray(turning_rate)[..., None]
         return (x * turning_rate * np.cos(angles) - (speed - y * turning_rate) * np.sin(angles)) / self.trail

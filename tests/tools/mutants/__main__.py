@@ -26,8 +26,7 @@ TEST_TIMEOUT = 300.0  # Timeout [s] of one run of pytest.
 
 
 def copy_tree(folder: Path) -> Path:
-    """A copy of the tree. Python checks the bytecode by the sources' contents, since a mistake may keep a file's date
-    and size."""
+    """A copy of the tree with bytecode checked by contents, since a mistake may keep a file's date and size."""
     shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*EXCLUDED_FROM_COPY))
     compileall.compile_dir(folder, quiet=2, invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
     return folder
