@@ -1,4 +1,4 @@
-"""Engines of the browser: what their adapter refuses, warnings of reduced velocities, and the child process."""
+"""Tests of the engines in the browser: refusals, warnings of reduced velocities, and the child process."""
 
 import json
 from dataclasses import replace

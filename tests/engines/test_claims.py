@@ -1,6 +1,6 @@
-"""The claims of methods with an error estimate, near a singular position and in random mechanisms.
+"""Tests of claimed errors near a singular position and in random mechanisms.
 
-`reports.search.mechanisms` draws trees and loops of up to six bodies, of all joints and force elements.
+`reports.search.mechanisms` draws trees and loops of up to six bodies with all kinds of joints and force elements.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ DT, STEPS = 2e-3, 100
 def toggle(miss: float) -> Mechanism:
     """A bar that a pin and a strut hold at rest, and a second bar that falls on it.
 
-    The line of the strut misses the pin by `miss` [m], so that its force is torque / miss.
+    The distance of the strut's line from the pin is `miss` [m], so the force of the strut is torque / miss.
     """
     bars = bar("held", (0.0, 0.0), (1.0, 0.0)), bar("falling", (1.0, 0.0), (1.6, 0.3))
     arm = float(np.hypot(0.6, 0.3)) / 2
@@ -67,7 +67,7 @@ def test_a_motion_is_unresolved_before_its_displacement_exceeds_the_claim(engine
 
 
 def test_reactions_that_a_displacement_changes_are_reported():
-    # The errors of both poses are within the claim. The displacement of the first changes the strut's force by some
+    # The errors of both poses are within the claim. With the small miss this error changes the strut's force by some
     # percent.
     for miss, is_reported in ((5e-6, True), (1e-3, False)):
         linkage = toggle(miss)
@@ -83,11 +83,11 @@ def test_the_displacement_closes_the_gaps_for_any_masses():
     heavy = replace(linkage, bodies=(linkage.bodies[0], replace(linkage.bodies[1], mass=1e6)))
     for described in (linkage, heavy):
         pose = np.repeat(described.pose[None], 3, axis=0)
-        pose[1:, 0, 2] += 1e-7  # rotation of the first bar about its centre
+        pose[1:, 0, 2] += 1e-7  # The first bar is rotated about its centre.
         t = np.arange(3.0)
         moved = closing(described, t, pose)
         assert np.abs(described.gap(pose + moved, t)).max() < 1e-3 * np.abs(described.gap(pose, t)).max()
-        assert np.abs(moved[0]).max() < 1e-12  # rounding of the start, over the miss
+        assert np.abs(moved[0]).max() < 1e-12  # This is rounding divided by the miss.
         assert not closing(described, t, np.full_like(pose, np.nan)).any()
 
 
@@ -137,7 +137,7 @@ STEP = 1e-3
 
 
 def claims(engine: Engine, seed: int, kinds: tuple[str, ...], count: int) -> list[Errors]:
-    """Errors and claims of the first mechanisms that the engine builds and whose motion the judge knows."""
+    """Errors and claims for the first `count` mechanisms that the engine builds and whose motion the judge knows."""
     results: list[Errors] = []
     for number in range(10 * count):
         if len(results) == count:
@@ -176,11 +176,11 @@ def test_a_thousand_mechanisms_are_within_the_claim_and_few_are_unresolved(engin
 
 @dataclass(frozen=True)
 class DifficultCase:
-    """A random mechanism and the limits of its error and estimate.
+    """A random mechanism with limits of the error and the estimate.
 
-    error: limit of the error of a resolved motion
-    unresolved: whether the motion is unresolved, with an estimate above the error
-    factor: largest ratio of that estimate to the error
+    error: limit of the error of a resolved motion.
+    unresolved: whether the motion is unresolved and the estimate exceeds the error.
+    factor: largest ratio of the estimate to the error in an unresolved motion.
     """
 
     engine: Engine
@@ -195,15 +195,16 @@ class DifficultCase:
 
 
 KNOWN = {
-    # The time scale of its torsion spring is 16 ms.
+    # The time scale of the torsion spring is 16 ms.
     "a stiff spring": DifficultCase(mujoco.EXTENDED, 3, 134, ALL_KINDS, unresolved=True),
-    # A damper stops a rod within three steps, so that the error falls by 4 and not by 16 if the step is halved.
+    # A damper stops a rod within three steps, so halving the step divides the error only by 4 and not by 16.
     "no order is seen": DifficultCase(mujoco.EXTENDED, 31, 49, ALL_KINDS, 1e-2, unresolved=True, factor=3),
     # After the first step the error was 1.05e-7 and the estimate 6.7e-8. After the second step the error was 2e-9.
     "the first step alone": DifficultCase(bullet.EXTENDED, 7001, 245, ALL_KINDS, 1e-2, unresolved=True),
-    # 5 kg slide in a body of 0.1 kg, and a drive acts on both. Rows of the usual stiffness have an error of 4e-4 rad.
+    # A body of 5 kg slides in a body of 0.1 kg, and a drive acts on both bodies. With the usual stiffness the error
+    # would be 4e-4 rad.
     "a light body carries a heavy one": DifficultCase(mujoco.EXTENDED, 1, 130, error=1e-9),
-    # A slot on a crank slides along a rod, so that the rates rise from 3 to 20 rad/s within 0.2 s.
+    # A slot on a crank slides along a rod. The rates rise from 3 to 20 rad/s within 0.2 s.
     "becomes fast in pymunk": DifficultCase(pymunk.EXTENDED, 22, 358, unresolved=True, lasts=0.2),
     "becomes fast in MuJoCo": DifficultCase(mujoco.EXTENDED, 1, 479, unresolved=True, lasts=0.2),
 }
@@ -229,7 +230,7 @@ def test_difficult_mechanisms_are_within_the_claim_or_unresolved(case: Difficult
 
 @pytest.mark.parametrize("number", [738, 1107], ids=["skate", "rod"])
 def test_reactions_of_exudyn_are_within_the_claim(number: int) -> None:
-    """Levels of different parity hid an error of 1.1e-3 and 3.6e-3 of the largest force from the estimate."""
+    """With levels of different parity the estimate missed relative force errors of 1.1e-3 and 3.6e-3."""
     answer = errors(installed(exudyn.EXTENDED), mechanism(601, number, ALL_KINDS), number)
     assert isinstance(answer, dict)
     assert answer[CLAIMED_REACTIONS][0] <= answer[CLAIMED_REACTIONS][1]
@@ -245,7 +246,7 @@ def test_the_sampling_changes_neither_motion_nor_estimate_nor_outcome(number: in
             assert np.array_equal(getattr(seldom, name), getattr(frequent, name)[::every]), (name, every)
         assert (seldom.warnings, seldom.unresolved_at) == (frequent.warnings, frequent.unresolved_at)
     assert (frequent.unresolved_at is None) == (number == 120)
-    if number == 120:  # its estimates after one and two steps are equal to rounding
+    if number == 120:  # The estimates after one and two steps are equal.
         estimate = present(frequent.estimate)
         assert np.all(estimate[1] >= (1 - 1e-3) * estimate[2])
 
@@ -273,8 +274,8 @@ DRAWN = {
     "rapier": ("pin", "drive", "weld"),
     "drake": ("pin", "weld", *ELEMENTS),
 }
-# Largest error relative to the displacement, by order, after 180 steps in a fifth of the time scale. The values are
-# measured, with a margin. SOFT is the value of Box2D. The error of a wrong lever arm or sign is 1.
+# Order -> largest error relative to the displacement, after 180 steps in a fifth of the time scale. The values are
+# measured and have a margin. SOFT is the value for Box2D. A wrong lever arm or sign would cause an error of 1.
 JUDGED = {1: 2e-2, 2: 1e-5, 4: 1e-9}
 SOFT = 0.3
 

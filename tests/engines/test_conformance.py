@@ -1,4 +1,4 @@
-"""The checks of `engines.conformance`: all our engines pass them, and each check finds a deliberate mistake."""
+"""Tests that all our engines pass the checks of `engines.conformance`, and that each check finds a mistake."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SPECIAL = (
     *(*of_pymunk.SKATE_METHODS, *of_pymunk.ROLL_FACETED, of_pymunk.ROLL_PIVOT),
     *(*of_mujoco.SKATES, *of_mujoco.SLOTS, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
 )
-# One or two methods of each adapter run daily. Other methods differ from them by settings alone.
+# Daily tests run one or two methods of each adapter. Other methods differ from these only by settings.
 DAILY = (
     *(pymunk.DEFAULT, pymunk.EXTENDED, mujoco.DEFAULT, lagrange.Lagrange("rk4", "projection")),
     *(engine for engine in registry.OTHERS if engine.build_time < SLOW_TO_BUILD and engine.variant == "default"),
@@ -43,7 +43,7 @@ DESCRIPTIONS = {
 
 
 def failures(engine: Engine) -> list[str]:
-    """A line for each case that fails."""
+    """One line for each failed case."""
     results = ((case, case.result()) for case in cases(engine))
     return [f"{case}: {result.sentence}" for case, result in results if result.status == "fails"]
 
@@ -56,7 +56,7 @@ def test_all_our_methods_pass_all_checks(engine):
 
 
 def close(found: Iterable[np.ndarray], exact) -> bool:
-    """Whether poses, twists and reactions are exact, with a tolerance of 100 times the judge's 1e-13."""
+    """Whether poses, twists and reactions are exact. The tolerance is 100 times the judge's tolerance of 1e-13."""
     expected = (exact.pose, exact.twist, exact.reaction)
     return all(np.abs(a - b).max() <= 1e-11 * (1 + np.abs(b).max()) for a, b in zip(found, expected, strict=True))
 
@@ -108,7 +108,7 @@ def test_a_case_that_is_not_supported_does_not_hold():
 
 
 def conform(capsys, *words: str) -> tuple[int, list[str], str]:
-    """The exit status, the lines on standard output and the text on standard error of `crosscheck conform`."""
+    """Run `crosscheck conform` and return (exit status, lines of standard output, text of standard error)."""
     with pytest.raises(SystemExit) as ended:
         main(["conform", *words])
     captured = capsys.readouterr()

@@ -1,4 +1,4 @@
-"""Models whose start violates their joints: the nearest consistent start, or one line that says why there is none."""
+"""Tests of models whose initial state violates joints. They start at the nearest consistent state or are refused."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -25,11 +25,11 @@ from reports.check.judging import refuse_disagreement
 from tests import ROOT
 from tests.independent_spaces import Equations
 
-STEPPED = 1e-6  # see tests/engines/test_reading_pymunk.py
+STEPPED = 1e-6  # See ACCELERATION_ERROR in tests/engines/test_reading_pymunk.py.
 
 
 def linkage(*points, ground=(0, 0), gravity=-9.81):
-    """A space with a chain of bars, the first pinned to the ground, and the bars."""
+    """(a space with a chain of bars, the bars). The first bar is pinned to the ground."""
     space = pymunk.Space()
     space.gravity = (0, gravity)
     bars = []
@@ -95,7 +95,7 @@ def test_a_consistent_start_is_not_changed():
 )
 def test_contradictory_motor_rates_are_refused_in_one_line(rates, named):
     space, bars = linkage(A, B, C, D)
-    if len(rates) == 1:  # a pivot makes it a truss without degree of freedom
+    if len(rates) == 1:  # With this pivot it is a truss without freedom.
         space.add(PivotJoint(space.static_body, bars[0], B))
     space.add(*[SimpleMotor(space.static_body, bars[0], rate) for rate in rates])
     with pytest.raises(InvalidMechanism, match="no velocities satisfy") as refused:
@@ -127,7 +127,7 @@ def test_a_stiffer_row_in_mujoco_is_nearer_to_the_impulse_of_ideal_joints():
         assert refuse_disagreement(reading) < STEPPED
         checked = check(reading, "meshed", 0.3, 1e-4, plan=SweepPlan(0.0))
         errors.append(checked.own_errors.largest)
-        # The error is that of the row's compliance, not of the step.
+        # The compliance of the row causes the error, and not the step.
         assert checked.parts.softness == pytest.approx(checked.own_errors.largest, rel=0.05)
     assert errors[1] < 0.5 * errors[0]
 
@@ -140,7 +140,7 @@ def six_digits(values):
 def test_joints_open_by_six_digit_rounding_are_closed(size):
     space, bars = linkage(*((size * x, size * y) for x, y in (A, B, C, D)), gravity=-9.81 * size)
     exact = [(*bar.position, 0.0) for bar in bars]
-    turn = 0.3  # rotation of the whole mechanism, so that no digit of a position is zero
+    turn = 0.3  # The whole mechanism is rotated, so that no digit of a position is zero.
     for bar in bars:
         bar.position, bar.angle = six_digits(bar.position.rotated(turn)), six_digits([turn])[0]
     for pivot in space.constraints:
@@ -157,7 +157,7 @@ def test_joints_open_by_six_digit_rounding_are_closed(size):
     assert [note for note in reading.notes if "nearest positions" in note.reason]
     run = reading.model.run(10, 1)
     assert run.pose[0] == pytest.approx(mechanism.pose, abs=1e-12 * size)
-    bars[1].position += (1e-4 * size, 0)  # larger than the rounding to six digits
+    bars[1].position += (1e-4 * size, 0)  # This gap is larger than rounding to six digits.
     with pytest.raises(InvalidMechanism, match="is open by"):
         read(space, 1e-3)
 
@@ -180,7 +180,7 @@ def test_joints_of_mujoco_open_by_six_digit_rounding_are_closed(text):
     data.qpos[:] = six_digits(positions(first.model.planar, truth.pose[-1:])[0])
     reading = read_mujoco(model, data)
     mechanism = reading.mechanism
-    assert np.abs(np.nan_to_num(mechanism.gap(mechanism.pose, 0.0))).max() < 1e-11  # rounding, with factors up to 18
+    assert np.abs(np.nan_to_num(mechanism.gap(mechanism.pose, 0.0))).max() < 1e-11  # amplified rounding
     assert [note for note in reading.notes if "nearest positions" in note.reason]
     assert mechanism.pose == pytest.approx(truth.pose[-1], abs=5e-6)
     assert refuse_disagreement(reading) < 1e-6

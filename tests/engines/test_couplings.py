@@ -1,4 +1,4 @@
-"""Couplings and coupled forces in numpy, in compiled code, and in models of MuJoCo."""
+"""Tests of couplings and coupled forces in numpy, in compiled code, and in models of MuJoCo."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -47,7 +47,7 @@ def value(terms, bodies=BODIES):
 
 
 def held(terms=TERMS, *forces):
-    """The four bodies, with velocities that the coupling allows."""
+    """A mechanism with the four bodies. Their velocities are compatible with the coupling."""
     free = Mechanism(BODIES, (), (0.2, -9.81))
     loose = replace(free, bodies=tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in BODIES))
     row = replace(loose, joints=(Coupling("sum", terms, value(terms)),)).rows(free.pose)[0]
@@ -86,7 +86,7 @@ def test_rows_of_couplings_are_derivatives_of_gaps_and_compiled_code_equals_nump
 
 
 def test_reactions_from_the_envelope_equal_those_of_dense_rows():
-    # Two terms of one row on the same body add up before they are squared.
+    # If two terms of a row act on the same body, their sum is squared.
     resting = tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in BODIES)
     pins = [Pin(body.name, None, body.name, body.pose[:2], (0.0, 0.0)) for body in BODIES]
     sums = (Coupling("sum", TERMS, value(TERMS)), Coupling("part", TERMS[1:3], value(TERMS[1:3])))
@@ -128,7 +128,7 @@ TABLE = """<body name="table"><joint name="x" type="slide" axis="1 0 0"/><joint 
  <joint name="spin" axis="0 1 0"/><geom type="box" size=".2 .1 .05" pos=".1 0 0"/></body>
  <body name="arm" pos="1 0 0"><joint name="lift" axis="0 1 0"/><joint name="reach" type="slide" axis="1 0 0"/>
  <geom type="box" size=".2 .1 .05" pos=".3 0 0"/></body>"""
-MODELS = {  # worldbody, equalities and the rest, the factors of each sum in MuJoCo's coordinates, start
+MODELS = {  # Name -> worldbody, equalities and further elements, factors of each sum in MuJoCo's coordinates, start.
     "a rack in a frame that swings": (
         RACK,
         '<equality><joint name="teeth" joint1="travel" joint2="turn" polycoef="0 .05 0 0 0"/></equality>',
@@ -184,7 +184,7 @@ def test_a_coupling_in_mujoco_has_the_motion_of_the_mechanism(name):
     names = [name for joint in reading.mechanism.joints for name in [type(joint).__name__] * joint.size]
     coupled = [index for index, kind in enumerate(names) if kind == "Coupling"]
     assert len(coupled) == len(sums)
-    # The reaction has the direction of the same sum, so it equals MuJoCo's force.
+    # The reaction acts on the same sum of coordinates, so it equals MuJoCo's force.
     assert ours.reaction[:, coupled] == pytest.approx(
         forces, rel=1e-6, abs=1e-7 * max(1.0, np.abs(forces).max(initial=0))
     )

@@ -1,6 +1,6 @@
-"""Drake: what its adapter's documentation says about the solver, and how a run ends that Drake gives up.
+"""Tests of Drake's solver as documented in the adapter, and of runs that Drake aborts.
 
-`test_promised`, `test_claims` and `test_conformance` test its motions and refusals, as those of every engine.
+`test_promised`, `test_claims` and `test_conformance` test motions and refusals of all engines.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def _with_drake() -> None:
 
 
 def test_a_step_closes_half_of_a_gap():
-    """SAP takes its relaxation time of a rigid constraint to be the step."""
+    """In the solver SAP the relaxation time of a rigid constraint is the step."""
     plant = DrakePlant(spanning_tree(scene("free_four_bar").mechanism()), 1e-3, "discrete")
     plant.plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
     position = plant.plant.GetPositions(plant.context)
@@ -42,7 +42,7 @@ def test_a_step_closes_half_of_a_gap():
 
 
 def test_a_constraint_with_the_ground_is_one_with_a_welded_body():
-    """With the world's own body Drake ends the process."""
+    """Drake would end the process if the constraint used the body of the world."""
     swinging = Mechanism((BAR,), (Rod("rod", None, "bar", (0.0, 0.0), (0.5, 0.0), 1.0),), (0.0, -10.0))
     run = DEFAULT.build(swinging, 1e-3)(10, 10)
     assert np.abs(swinging.gap(run.pose, run.t)).max() < 1e-6

@@ -1,4 +1,4 @@
-"""Extrapolation to zero step, tested on toy engines whose error has known terms."""
+"""Tests of the extrapolation to step zero on toy engines with known error terms."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from tests.toys import Plain
 
 @dataclass(frozen=True)
 class SeriesToy(Plain):
-    """A toy engine with the pose cos t + error; the error is the sum of coefficient * t * dt^power over `terms`.
+    """A toy engine with the pose cos t + error. The error is the sum of coefficient * t * dt^power over `terms`.
 
-    The errors of twists and reactions are multiples of it.
+    The errors of twists and reactions are multiples of the pose error.
     """
 
     terms: dict[int, float] = field(default_factory=lambda: {2: 1.0, 3: -2.0})
-    broken_below: float = 0.0  # [s] runs with smaller steps are NaN after the first sample.
-    resets_below: float = 0.0  # [s] runs with smaller steps have a reset.
-    turned_above: float = math.inf  # [s] runs with larger steps have an error of 1 rad from t = 2 s on.
+    broken_below: float = 0.0  # Runs with smaller steps [s] are NaN after the first sample.
+    resets_below: float = 0.0  # Runs with smaller steps [s] have a reset.
+    turned_above: float = math.inf  # Runs with larger steps [s] have an error of 1 rad from t = 2 s on.
     name: str = "toy"
     variant: str = "plain"
 
@@ -77,7 +77,7 @@ def test_a_run_warning_keeps_its_fields_when_pickled():
 
 
 def sledge() -> Mechanism:
-    """A bar on a skate, which has no gap at any pose of a toy engine."""
+    """A bar on a skate. A skate has no gap at any pose of a toy engine."""
     return replace(pendulum(), joints=(Skate("blade", None, "bar", (0.0, 0.0), 0.0),))
 
 
@@ -100,7 +100,7 @@ def test_the_weights_sum_to_one_and_cancel_every_power():
         weights = extrapolation_weights(levels, powers)
         assert weights.sum() == pytest.approx(1, abs=1e-13)
         for power in powers:
-            # The tolerance is the rounding of terms below 100.
+            # The tolerance allows for rounding of terms that are smaller than 100.
             assert weights @ (levels[0] / np.array(levels)) ** power == pytest.approx(0, abs=1e-13)
 
 
@@ -109,8 +109,8 @@ def test_errors_in_the_removed_powers_vanish():
     assert min(errors(inner)) > 1e-2
     assert max(errors(run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13
     exact = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
-    assert present(exact.estimate).max() < 1e-12  # Rounding of all steps.
-    # With the powers (2, 4) the term 2 t dt^3 leaves an error of 2 * 3 * 1e-3 / 60; other powers leave more.
+    assert present(exact.estimate).max() < 1e-12  # This is rounding of all steps.
+    # With the powers (2, 4) the term 2 t dt^3 causes an error of 2 * 3 * 1e-3 / 60. With other powers it is larger.
     for powers in ((2, 4), (1, 3), (3, 4)):
         extrapolated = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), powers))
         assert min(errors(extrapolated)) > 0.9e-4
@@ -124,7 +124,7 @@ def test_errors_in_the_removed_powers_vanish():
 
 
 def test_runs_without_error_expansion_give_the_finest_run_and_are_unresolved():
-    # All runs but the finest take another branch at t = 2 s.
+    # All runs except the finest run change to another branch at t = 2 s.
     turned = Extrapolated(SeriesToy(turned_above=0.03), "extended", (1, 2, 3, 4), (2, 3, 4)).build(sledge(), 0.1)(10, 3)
     finest = SeriesToy(turned_above=0.03).build(sledge(), 0.025)(10, 12)
     assert turned.unresolved_at == pytest.approx(2.1)
@@ -137,7 +137,7 @@ def test_runs_without_error_expansion_give_the_finest_run_and_are_unresolved():
         assert np.array_equal(getattr(turned, name)[late], getattr(finest, name)[late])
         assert not np.array_equal(getattr(turned, name)[~late], getattr(finest, name)[~late])
     assert turned.estimate is not None
-    # The estimate is the difference of 1 rad between the finest run and another.
+    # The estimate is the difference of 1 rad between the finest run and the other runs.
     assert np.all(np.abs(turned.estimate[late] - 1) < 0.1)
     assert turned.estimate[~late].max() < 1e-3
 
@@ -166,14 +166,14 @@ def test_long_runs_are_compared_at_fewer_instants(most, steps, monkeypatch):
 
 @pytest.mark.parametrize("growth", [0.0, 0.3, 1.0])
 def test_the_estimate_is_near_the_error_of_a_power_series_in_the_step(growth):
-    # 1 / (1 - h / 3) has all powers of the step h.
+    # The expansion of 1 / (1 - h / 3) contains all powers of the step h.
     levels, powers = (2, 3, 4, 6, 8), (1, 2, 3, 4)
     steps = (0.05 + growth) / np.array(levels)
     values = np.cumsum(np.ones((5, 3)), axis=1) / (1 - steps[:, None] / 3)
     error = np.abs(combine(values, extrapolation_weights(levels, powers)) - np.arange(1, 4))
     estimate = expected_error(values, levels, powers)
     assert np.all(estimate > error)
-    # If differences fall by more than a factor of 100, the estimate is a share of the last difference.
+    # If successive differences fall by more than a factor of 100, the estimate is below the last difference.
     last = np.abs(
         np.subtract(*(combine(values[i:], extrapolation_weights(levels[i:], powers[: 4 - i])) for i in (0, 1)))
     )
@@ -181,7 +181,7 @@ def test_the_estimate_is_near_the_error_of_a_power_series_in_the_step(growth):
 
 
 def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
-    # With 1 / 3 kg m^2 about the pin, the damper stops the bar in a third of a millisecond.
+    # The inertia of the bar is 1 / 3 kg m^2, so the damper stops it in a third of a millisecond.
     linkage = replace(sledge(), forces=(TorsionDamper("damper", None, "bar", 1e3),))
     exact = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3))
     assert exact.build(linkage, 0.9 * linkage.time_scale)(10, 1).unresolved_at is None
@@ -239,7 +239,7 @@ def test_a_further_run_decides_if_the_last_difference_is_small_by_chance():
     residual = {power: float(extrapolation_weights(levels, powers) @ steps**power) for power in (5, 6)}
     without = {power: float(extrapolation_weights(levels[1:], powers[:-1]) @ steps[1:] ** power) for power in (5, 6)}
     last = {power: residual[power] - without[power] for power in (5, 6)}
-    size = 3 * CLAIM / abs(residual[5] - residual[6] * last[5] / last[6])  # the error is 3 CLAIM after a second
+    size = 3 * CLAIM / abs(residual[5] - residual[6] * last[5] / last[6])  # The error is 3 CLAIM after 1 s.
     toy = SeriesToy({2: 1e-3, 3: -2e-3, 4: 1e-3, 5: size, 6: -size * last[5] / last[6]})
     trajectory = run(Extrapolated(toy, "extended", levels, powers), dt)
     error = np.abs(trajectory.pose - np.cos(trajectory.t)[:, None, None]).max(axis=(1, 2))

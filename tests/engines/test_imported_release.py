@@ -1,4 +1,4 @@
-"""Comparison of the release of imported code with its metadata: overwritten files, builds and modules."""
+"""Tests that compare the release of imported code with its metadata, for overwritten files, builds and modules."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Released(Toy):
 
 
 def distribution(folder, name, version, says, listed="__init__.py"):
-    """Install a distribution with one module as pip does: files, metadata and a digest of each file."""
+    """Install a distribution with one module like pip, with files, metadata and a digest of each file."""
     package = folder / NAME
     package.mkdir(parents=True, exist_ok=True)
     (package / "__init__.py").write_text(f"__version__ = {says!r}\n")
@@ -39,7 +39,7 @@ def distribution(folder, name, version, says, listed="__init__.py"):
 
 @pytest.fixture
 def answer(monkeypatch):
-    """The sentence of `other_release` once the module was imported from these folders."""
+    """A function that imports the module from folders and returns the sentence of `other_release`."""
 
     def asked(*folders, elsewhere=True):
         for folder in reversed(folders):
@@ -62,10 +62,10 @@ def test_a_module_with_unchanged_files_may_have_any_version(tmp_path, answer, sa
 
 
 def test_builds_and_additions_to_another_package_are_accepted(tmp_path, answer):
-    # For example, mujoco-mjx adds mujoco/mjx to the package of mujoco-core.
+    # For example, mujoco-mjx adds the folder mujoco/mjx to the package of mujoco-core.
     distribution(tmp_path, NAME, "1.17.0", "2.0.1", listed="more/__init__.py")
     distribution(tmp_path, "core", "2.0.1+patched", "2.0.1")
-    (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # as the author changed it since
+    (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # The author has changed it since.
     assert answer(tmp_path) == ""
 
 
@@ -86,12 +86,12 @@ def test_a_folder_on_the_path_that_hides_an_installation_is_reported_unless_it_i
     sentence = answer(tmp_path / "build", tmp_path / "installed")
     assert "is 2.1.0" in sentence
     assert str(tmp_path / "build") in sentence
-    assert other_release([Released()], elsewhere=False) == ""  # a build that `compare` runs
+    assert other_release([Released()], elsewhere=False) == ""  # `compare` runs such builds.
 
 
 @pytest.fixture
 def overlaid(monkeypatch):
-    """A release whose files are overwritten, such as those of mujoco-core by mujoco 3.17.0."""
+    """A release with overwritten files. For example, mujoco 3.17.0 overwrites files of mujoco-core."""
     imported_release._difference_of.cache_clear()
     monkeypatch.setattr(mujoco, "__version__", "3.17.0")
     monkeypatch.setattr(imported_release, "_is_changed", lambda file: True)

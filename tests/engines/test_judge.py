@@ -1,4 +1,4 @@
-"""The gate's judge: the orders of its methods, the displacement of regularised joints, and motions with them."""
+"""Tests of the gate's judge: convergence orders, and displacements and motions of regularised joints."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ SWINGING = LinkPendulum(duration=0.3, horizon=0.3)
 def test_all_errors_have_the_order_of_the_method(order):
     coarse, fine = errors(SWINGING, order, 1), errors(SWINGING, order, 2)
     observed = {name: np.log2(coarse[name] / fine[name]) for name in QUANTITY_NAMES}
-    # At a step of 0.01 s the next power of the step contributes a thirtieth.
+    # At a step of 0.01 s the next power of the step contributes a thirtieth of the error.
     assert observed == pytest.approx(dict.fromkeys(QUANTITY_NAMES, order), abs=0.1)
 
 
 def test_a_projection_closes_the_joints_without_loss_of_accuracy():
     alone, projected = errors(SWINGING, 4, 1), errors(SWINGING, 4, 1, project=True)
-    # One Newton step squares a gap of 1e-8 m; the twist is projected with the rows of the pose after it.
+    # One Newton step squares a gap of 1e-8 m. Then the twist is projected with the rows of the new pose.
     assert max(projected["gap"], projected["slip"]) < 1e-12
     assert projected["angle"] < 3 * alone["angle"]
 
@@ -51,7 +51,7 @@ def test_a_diverged_motion_has_no_finite_error_and_ends_early():
 
 @dataclass(frozen=True)
 class HeavyDisc(Disc):
-    """A disc of 4 kg at rest on a pin through its centre. The inverse inertia of the rows is 1/(4 kg)."""
+    """A disc of 4 kg at rest on a pin through its centre. The inverse inertia A of the rows is 1/(4 kg)."""
 
     rate: float = 0.0
     duration: float = 0.4
@@ -63,7 +63,7 @@ class HeavyDisc(Disc):
 
 
 def test_the_gap_of_a_regularised_joint_follows_from_compliance_and_weight():
-    # At rest 0 = -stiffness gap - compliance A reaction: 0.01 * 40 N / 4 kg / 2500 s^-2, after 20 time constants.
+    # At rest stiffness gap = -compliance A reaction. So the gap is 0.01 * 40 N / 4 kg / 2500 s^-2 = 4e-5 m.
     run = integrate(HeavyDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.01, (True, True)))
     assert run.pose[-1, 0] == pytest.approx([0.0, -4e-5, 0.0], rel=1e-6)
     assert run.reaction[-1] == pytest.approx([0.0, 40.0], rel=1e-6)
@@ -76,7 +76,7 @@ def test_rigid_rows_have_no_gap_beside_regularised_rows():
 
 @dataclass(frozen=True)
 class TurningDisc(HeavyDisc):
-    """A disc that turns at 2 rad/s on a pin 0.1 m beside its centre."""
+    """A disc that turns at 2 rad/s on a pin. The distance of the pin from the centre is 0.1 m."""
 
     def mechanism(self) -> Mechanism:
         pin = Pin("axle", None, "disc", (0.0, 0.0), (-0.1, 0.0))
@@ -88,8 +88,8 @@ def test_without_bias_a_regularised_joint_has_the_gap_of_the_centripetal_acceler
     mechanism = TurningDisc().mechanism()
     run = integrate(TurningDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.0, (True, True), complete))
     opened = np.hypot(*mechanism.gap(run.pose[-1], run.t[-1]))
-    # The bias is the centripetal acceleration, 0.1 m * 4 rad^2/s^2. Without it the spring of 2500 s^-2 provides it.
-    # The gap turns with the disc, so the damper acts perpendicular to it: 2 rad/s * 100 s^-1, 8 % of the stiffness.
+    # The centripetal acceleration is 0.1 m * 4 rad^2/s^2. Without the bias the spring of 2500 s^-2 provides it. The gap
+    # turns with the disc at 2 rad/s, so the damper of 100 s^-1 acts perpendicular to it with 8 % of the stiffness.
     assert opened == pytest.approx(0.0 if complete else 0.4 / np.hypot(2500, 200), rel=1e-2, abs=1e-7)
 
 
@@ -102,16 +102,16 @@ def test_refined_steps_agree_with_shorter_fixed_steps():
     run = refined(SWINGING.mechanism(), SWINGING.samples, SWINGING.spacing, soft)
     assert run is not None
     short_steps = integrate(SWINGING, 4, 60, soft)
-    # A third of the step changes the state by less than 1e-6, so the error at order 4 is below 1/80 of that.
+    # A third of the step changes the state by less than 1e-6. So at order 4 the error is below 1e-6 / 80.
     assert np.abs(run.pose - short_steps.pose).max() < 1e-6
     assert np.abs(run.reaction - short_steps.reaction).max() < 1e-4 * np.abs(short_steps.reaction).max()
 
 
-THROUGH = NFourBar(duration=1.0, horizon=1.0)  # it passes a singular position after 0.714 s
+THROUGH = NFourBar(duration=1.0, horizon=1.0)  # The motion passes a singular position after 0.714 s.
 
 
 def spring(mechanism: Mechanism) -> Regularisation:
-    """A regularisation of the rows of the joints named left. All other rows are rigid."""
+    """A regularisation of the rows of the joints with the name "left". All other rows are rigid."""
     rows = tuple(name.split()[-2] == "left" for name in mechanism.row_names)
     return Regularisation(4e4, 400.0, 1e-4, rows)
 
@@ -121,12 +121,12 @@ def test_a_regularised_motion_through_a_singular_position_converges(monkeypatch)
     soft = spring(THROUGH.mechanism())
     assert 0 < sum(soft.rows) < len(soft.rows)
     coarse = errors_as_soft(THROUGH, soft)
-    assert 1e-6 < coarse["angle"] < 1e-5  # 5.4e-6, as by steps of 1e-4 s throughout
+    assert 1e-6 < coarse["angle"] < 1e-5  # Fixed steps of 1e-4 s give 5.4e-6.
     monkeypatch.setattr(judge, "SAME", judge.SAME / 10)
-    monkeypatch.setattr(judge, "PARTS", 1)  # pieces of 0.01 s
+    monkeypatch.setattr(judge, "PARTS", 1)  # intervals of 0.01 s
     finer = errors_as_soft(THROUGH, soft)
     assert dict(finer) == pytest.approx(dict(coarse), rel=0.1)
-    # Fixed steps that are short enough for the springs diverge there.
+    # Fixed steps that are short enough for the springs diverge at the singular position.
     assert errors(THROUGH, 4, 2, soft)["reaction"] > 100 * finer["reaction"]
 
 

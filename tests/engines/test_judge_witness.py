@@ -1,8 +1,8 @@
-"""Comparison of the judge with an independent solution, the witness, in random mechanisms.
+"""Comparison of the judge with an independent solution in random mechanisms. This solution is called the witness.
 
 The witness shares no code with `engines.lagrange` or `Mechanism.rows`. It integrates Newton's law with multipliers by
-scipy. A row is the relative velocity of two points of rigid bodies, as in chapter 18, for a unit rate of each
-coordinate. Its derivative is computed by a complex step. Rolling contacts are checked by closed forms of scenes.
+scipy. A row contains the relative velocities of two points for a unit rate of each coordinate, as in chapter 18. The
+derivative of a row is computed by a complex step. Other tests check rolling contacts.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import ALL_KINDS
 
 H = 1e-30  # Size of a complex step.
-MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # Of accelerations; resolved motions take 500 and 30,000.
+MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # Resolved motions need 500 and 30,000.
 WITNESSED_KINDS = tuple(kind for kind in ALL_KINDS if kind != "roll")
 
 
 class BodyState(NamedTuple):
-    """Position, angle and velocities of a body, as numbers or arrays."""
+    """The position, angle and velocities of a body. They are numbers or arrays."""
 
     x: Any
     y: Any
@@ -42,13 +42,13 @@ GROUND = BodyState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def at(body: BodyState, point: Any) -> tuple[Any, Any]:
-    """The position [m] of a body's point in the world's frame."""
+    """The position [m] of a point of a body, in the frame of the world."""
     c, s = np.cos(body.angle), np.sin(body.angle)
     return body.x + c * point[0] - s * point[1], body.y + s * point[0] + c * point[1]
 
 
 def moving(body: BodyState, place: tuple[Any, Any]) -> tuple[Any, Any]:
-    """The velocity [m/s] of a body's material point at a position in the world's frame."""
+    """The velocity [m/s] of the material point of a body that is at a position in the frame of the world."""
     return body.vx - body.omega * (place[1] - body.y), body.vy + body.omega * (place[0] - body.x)
 
 
@@ -116,13 +116,13 @@ class Witness:
     def between(self, pose: Any, twist: Any, element: Any) -> tuple[BodyState, BodyState]:
         """The states of the two bodies of a joint or force element.
 
-        pose (bodies, 3); twist (bodies, 3), or (bodies, 3, n) for n motions at the same pose
+        pose: (bodies, 3). twist: (bodies, 3), or (bodies, 3, n) for n motions at the same pose.
         """
         first, second = (GROUND if i < 0 else BodyState(*pose[i], *twist[i]) for i in self.ends[element.name])
         return first, second
 
     def rows(self, pose: Any) -> Any:
-        """The Jacobian J (rows, coordinates): the slips of all joints for a unit of each velocity."""
+        """The Jacobian J (rows, coordinates). A column contains the slips of all joints for one unit velocity."""
         slips = [s for joint in self.mechanism.joints for s in slip(joint, *self.between(pose, self.units, joint))]
         return np.array([np.broadcast_to(s, len(self.mass)) for s in slips]).reshape(-1, len(self.mass))
 
@@ -140,9 +140,9 @@ class Witness:
         return solution[:n].reshape(-1, 3), solution[n:]
 
     def motion(self, t: Any, method: str = "DOP853", tolerance: float = 1e-13) -> tuple[Any, Any]:
-        """Poses and twists (times, bodies, 3), with fewer times if the integrator fails.
+        """Poses and twists (times, bodies, 3). There are fewer times if the integrator fails.
 
-        Raises ArithmeticError after MOST_EVALUATIONS accelerations, since rounding then exceeds the tolerance.
+        Raises ArithmeticError after MOST_EVALUATIONS evaluations, since rounding then exceeds the tolerance.
         """
         evaluations = 0
 
@@ -175,7 +175,7 @@ def test_the_judge_agrees_with_newtons_law_in_random_mechanisms(number: int) -> 
     unit = np.abs(pose - mechanism.pose).max() + mechanism.length_scale
     for judge in (stepped, in_numpy):
         fine = judge(mechanism, WITNESS_SAMPLES, spacing, 4, 2 * JUDGE_STEPS)
-        # At order 4 the error with half the step is 1/15 of the change. The factor 1/3 allows for the next power.
+        # At order 4 the error at half the step is 1/15 of the change. The factor 1/3 allows for the next power.
         for name, expected, scale in (("pose", pose, 1.0), ("twist", twist, mechanism.time_scale)):
             allowed = np.abs((getattr(fine, name) - getattr(coarse, name)) * size).max() / 3
             error = np.abs((getattr(fine, name) - expected) * size).max()
@@ -190,11 +190,11 @@ def test_the_judge_agrees_with_newtons_law_in_random_mechanisms(number: int) -> 
 
 
 class WitnessedCase(NamedTuple):
-    """The comparison of a motion, in rad and in units of the mechanism's length and time, or NaN if it ends early.
+    """The comparison of a motion, in rad and in units of the mechanism's length and time. NaN if a motion ends early.
 
-    resolved: whether the judge claims JUDGE_CLAIM
-    difference: largest difference between judge and witness
-    doubt: largest difference between witnesses at two tolerances
+    resolved: whether the judge claims an error of at most JUDGE_CLAIM.
+    difference: largest difference between judge and witness.
+    doubt: largest difference between witnesses at two tolerances.
     """
 
     number: int
@@ -204,7 +204,7 @@ class WitnessedCase(NamedTuple):
 
 
 def witnessed(mechanism: Mechanism, t: Any, method: str, tolerance: float) -> tuple[Any, Any]:
-    """Poses and twists of the witness; empty arrays if it fails."""
+    """Poses and twists of the witness. The arrays are empty if the witness fails."""
     try:
         return Witness(mechanism).motion(t, method, tolerance)
     except ArithmeticError:
@@ -214,7 +214,7 @@ def witnessed(mechanism: Mechanism, t: Any, method: str, tolerance: float) -> tu
 def compared(
     number: int, mechanism: Mechanism, span: float, method: str, tolerances: tuple[float, float]
 ) -> WitnessedCase:
-    """The comparison of judge and witness over a `span` [s]; the last tolerance of the witness is the smallest."""
+    """The comparison of judge and witness over a duration `span` [s]. The last tolerance is the smallest."""
     t = np.linspace(0.0, span, WITNESS_SAMPLES + 1)
     with np.errstate(all="ignore"):
         judge = TRUTH.build(mechanism, t[1])(WITNESS_SAMPLES, 1)
@@ -231,12 +231,15 @@ def compared(
     return WitnessedCase(number, is_resolved, difference((judge.pose, judge.twist), tight), difference(loose, tight))
 
 
-WITNESS_SEED = 291528136  # From a commit's hash, so that it is not selected.
+WITNESS_SEED = 291528136  # It follows from the hash of a commit, so nobody has selected it.
 STIFF_NUMBERS = (59, 114, 237, 411)  # Springs make these mechanisms 10 to 3204 times faster.
 
 
 def confirmed(cases: list[WitnessedCase]) -> list[WitnessedCase]:
-    """The cases that the judge resolves and whose witness is more accurate than the claim; fails if one is wrong."""
+    """Assert that the judge is correct in all cases where it claims an error and the witness is accurate enough.
+
+    Return these cases.
+    """
     comparable = [case for case in cases if case.resolved and case.doubt < JUDGE_CLAIM]
     wrong = [case for case in comparable if not case.difference < JUDGE_CLAIM + case.doubt]
     assert wrong == [], f"{len(wrong)} of {len(cases)}"
@@ -251,7 +254,7 @@ def test_the_judges_error_is_within_its_claim_in_random_mechanisms() -> None:
 
 
 def test_the_judges_error_is_within_its_claim_in_stiff_mechanisms() -> None:
-    # The duration is WITNESS_SPAN of the time scale without springs and dampers.
+    # The duration is WITNESS_SPAN times the time scale of the mechanism without springs and dampers.
     cases = []
     for number in STIFF_NUMBERS:
         mechanism = random_mechanism(WITNESS_SEED, number, WITNESSED_KINDS)

@@ -1,4 +1,4 @@
-"""Exact multipliers: orders, stabilisation, and motions known in closed form."""
+"""Tests of the exact solver: convergence orders, stabilisation, and motions with a closed form."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.present import present
 
 @pytest.fixture(params=["compiled", "numpy"])
 def code(request, monkeypatch):
-    """Results of compiled code (if numba is installed) and of numpy."""
+    """Run the test in numpy, and in compiled code if numba is installed."""
     if request.param == "numpy":
         monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
 
@@ -40,7 +40,7 @@ def swinging_angle(t, amplitude):
 @in_both_codes
 def test_a_swinging_bar_agrees_with_elliptic_functions():
     run = TRUTH.build(pendulum(angle=-np.pi / 2 + 1.0), 0.1)(30, 1)
-    # The error after 3 s at a tolerance of 1e-13 is a few 1e-13.
+    # At a tolerance of 1e-13 the error after 3 s is several 1e-13.
     np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
     angle, rate = run.pose[:, 0, 2], run.twist[:, 0, 2]
     arm = 0.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -50,7 +50,7 @@ def test_a_swinging_bar_agrees_with_elliptic_functions():
 
 def test_dense_output_is_as_accurate_as_the_ends_of_steps():
     run = Lagrange(tolerance=1e-13).build(pendulum(angle=-np.pi / 2 + 1.0), 1e-3)(300, 1)
-    # The steps at this tolerance are longer than the spacing, so most samples come from dense output.
+    # At this tolerance steps are longer than the spacing of samples, so most samples come from dense output.
     np.testing.assert_allclose(run.pose[:, 0, 2] + np.pi / 2, swinging_angle(run.t, 1.0), rtol=0, atol=2e-12)
 
 
@@ -60,7 +60,7 @@ def test_a_judge_estimates_its_error_and_reports_when_it_exceeds_its_claim(toler
     run = Judge(tolerance=tolerance).build(pendulum(angle=-np.pi / 2 + 1.0), 0.5)(6, 1)
     error = np.abs(run.pose[:, 0, 2] + np.pi / 2 - swinging_angle(run.t, 1.0))
     estimate = present(run.estimate)[:, 0, 2]
-    # In numpy all steps end at samples, so that the error of the second run is hardly larger.
+    # In numpy all steps end at samples, so the error of the second run is hardly larger.
     assert error.max() < 2 * estimate.max() + 1e-12
     assert (run.unresolved_at is None) is resolved
     assert any("unresolved" in warning for warning in run.warnings) is not resolved
@@ -80,7 +80,7 @@ def test_fixed_steps_report_a_singular_position_or_a_diverged_motion(method):
 @pytest.mark.parametrize(("gyration", "is_closed"), [(1.0, True), (1e-6, False)])
 @pytest.mark.parametrize("method", ["euler none", "rk4 baumgarte", "dop853 projection"])
 def test_a_row_that_is_lost_by_rounding_is_reported(method, gyration, is_closed):
-    # The body is 2.5 km from its pin. The ratio of its row's eigenvalues is (gyration / arm)^2.
+    # The body is 2.5 km from its pin. The ratio of the eigenvalues of its rows is (gyration / arm)^2.
     c, s = np.cos(0.7), np.sin(0.7)
     light = Body("light", 1.0, gyration**2, (0.0, 0.0, 0.7), (82 * c, 82 * s, 0.03))
     rate = (82 * 2 + 2500 * 0.03) / -500
@@ -103,7 +103,7 @@ def test_the_error_falls_with_the_integrators_order(integrator, order, stabilisa
         run = Lagrange(integrator, stabilisation).build(mechanism, 0.02 / every)(6, every)
         errors.append(np.max(np.abs(run.pose - truth.pose)))
     observed = np.log2(np.array(errors[:-1]) / errors[1:])
-    # The tolerance is half an order, since the next power of the step contributes at these steps.
+    # The tolerance is half an order, since the next power of the step contributes to these errors.
     np.testing.assert_allclose(observed, order, atol=0.5)
 
 
@@ -124,7 +124,7 @@ def test_constrained_acceleration_satisfies_newtons_law_and_the_rows():
     twist, rows = random.normal(size=mechanism.twist.shape), mechanism.rows(pose)
     soft = np.arange(mechanism.row_count) % 3 == 0
     inertia = inverse_inertia((rows / mechanism.inertias.reshape(-1)) @ rows.T, soft)
-    # The acceleration along the soft row 0 due to a unit force in it, under the constraints of the rigid rows.
+    # A unit force acts in the soft row 0. Its acceleration is computed with the constraints of the rigid rows.
     rigid = np.delete(rows, np.flatnonzero(soft), axis=0) / np.sqrt(mechanism.inertias.reshape(-1))
     push = rows[0] / np.sqrt(mechanism.inertias.reshape(-1))
     push = push - rigid.T @ np.linalg.lstsq(rigid.T, push, rcond=None)[0]
@@ -141,17 +141,17 @@ def test_constrained_acceleration_satisfies_newtons_law_and_the_rows():
 
 
 def test_baumgarte_closes_an_open_joint_critically_damped():
-    # The bar is displaced from its pin along its axis, so that the gap satisfies gap'' = -2 gap'/T - gap/T^2.
+    # The bar is displaced from its pin along its axis. The gap satisfies gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
     regularisation = Lagrange("rk4", "baumgarte").regularisation(
         mechanism, constant / 5
-    )  # its time constant is five steps
+    )  # The time constant is five steps.
     step = runge_kutta(Dynamics(mechanism, regularisation), RK4)
     pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
     for i in range(150):
         pose, twist = step(pose, twist, i * dt, dt)
     times = 150 * dt / constant
-    # The relative error of RK4 after 150 steps of a fiftieth of the time constant is 1e-7.
+    # The step is a fiftieth of the time constant. After 150 steps the relative error of RK4 is 1e-7.
     assert mechanism.gap(pose, 0.0)[0] == pytest.approx(0.02 * (1 + times) * np.exp(-times), rel=1e-5)
 
 
@@ -159,7 +159,7 @@ def test_baumgarte_closes_an_open_joint_critically_damped():
 def test_baumgartes_spring_uses_the_drives_angle_at_each_stage():
     mechanism = four_bar(crank_rate=10.0, drive=10.0)
     run = Lagrange("rk4", "baumgarte").build(mechanism, 1e-3)(20, 5)
-    # The drive has a constant rate. The gap is rounding if each stage uses the angle at its time.
+    # The drive has a constant rate. The gap is only rounding if each stage uses the angle at the time of the stage.
     assert np.max(np.abs(joint_gap(mechanism, run)[:, -1])) < 1e-13
 
 
@@ -167,7 +167,7 @@ def test_baumgartes_spring_uses_the_drives_angle_at_each_stage():
 def test_the_semi_implicit_euler_method_moves_a_pose_with_the_new_velocity():
     mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 0.0, 3.0)),), (), (0.0, -9.81))
     run = Lagrange("euler", "none").build(mechanism, 0.1)(10, 1)
-    # The pose moves by the new velocities, so the displacement is g dt^2 (1 + ... + 10) and not g dt^2 (0 + ... + 9).
+    # The pose moves by the new velocities. So the factors of g dt^2 are 1 to 10 with the sum 55, and not 0 to 9.
     np.testing.assert_allclose(run.pose[-1, 0], [1.0, -9.81 * 0.01 * 55, 3.0], rtol=1e-14)
 
 

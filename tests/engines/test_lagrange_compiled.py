@@ -1,4 +1,4 @@
-"""Comparison of compiled code with numpy, and tests of its tables, windows and warnings."""
+"""Comparison of compiled code with numpy, and tests of tables, windows and warnings of the compiled code."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.skipif(not loading.installed(), reason="numba, the extr
 
 
 def differences(mechanism: Mechanism, method: Lagrange, dt: float, every: int = 2) -> tuple[float, float]:
-    """The largest difference of compiled states from those of numpy, in units of the mechanism's length and speed."""
+    """The largest differences of poses and twists between compiled code and numpy, in units of the mechanism."""
     unit = mechanism.pose_unit
     runs = [replace(method, compiled=compiled).build(mechanism, dt)(2, every) for compiled in (True, False)]
     pose, twist = (np.abs((getattr(runs[0], name) - getattr(runs[1], name)) / unit).max() for name in ("pose", "twist"))
@@ -49,13 +49,13 @@ def test_compiled_methods_equal_numpy_to_rounding(method):
 @pytest.mark.parametrize("number", range(12))
 def test_compiled_motions_of_random_mechanisms_equal_numpy(number):
     mechanism = random_mechanism(21, number, ALL_KINDS)
-    # The largest difference of the first 150 is 1.2e-14.
+    # The largest difference in the first 150 mechanisms is 1.2e-14.
     assert max(differences(mechanism, Lagrange("rk4"), 1e-3 * mechanism.time_scale)) < 1e-12
 
 
 @pytest.mark.parametrize("number", range(12))
 def test_compiled_accelerations_equal_numpy_in_states_that_violate_joints(number):
-    # Some terms of the bias vanish if joints do not slip.
+    # The states violate the joints, since some terms of the bias vanish without slip.
     mechanism, random = random_mechanism(21, number, ALL_KINDS), np.random.default_rng(number)
     pose = mechanism.pose + 1e-2 * mechanism.pose_unit * random.normal(size=mechanism.pose.shape)
     twist = mechanism.twist + mechanism.pose_unit / mechanism.time_scale * random.normal(size=pose.shape)
@@ -68,7 +68,7 @@ def test_compiled_accelerations_equal_numpy_in_states_that_violate_joints(number
 def test_the_random_mechanisms_have_all_compiled_joints_and_forces():
     mechanisms = [random_mechanism(21, number, ALL_KINDS) for number in range(12)]
     kinds = {type(part) for mechanism in mechanisms for part in (*mechanism.joints, *mechanism.forces)}
-    assert kinds == {*JOINT_FIELDS, *FORCE_FIELDS} - {Coupling, CoupledForce}  # see tests/engines/test_couplings.py
+    assert kinds == {*JOINT_FIELDS, *FORCE_FIELDS} - {Coupling, CoupledForce}  # see test_couplings.py
 
 
 def test_redundant_rows_do_not_change_the_motion_and_share_the_reaction():
@@ -85,7 +85,7 @@ def test_redundant_rows_do_not_change_the_motion_and_share_the_reaction():
 def test_the_matrix_of_a_long_chain_has_a_narrow_envelope(links):
     scene = LongPendulum(links=links)
     system, _ = system_of(scene.mechanism())
-    assert len(system.matrix) < 4 * len(system.rows)  # a pin's two rows are coupled with those of its neighbours
+    assert len(system.matrix) < 4 * len(system.rows)  # Rows of neighbouring pins are coupled.
     run = Lagrange("rk4").build(scene.mechanism(), 1e-4)(2, 2)
     truth = scene.motion(run.t)
     # The chain has hardly moved after 2e-4 s, so the rates of the links are compared.
@@ -95,7 +95,7 @@ def test_the_matrix_of_a_long_chain_has_a_narrow_envelope(links):
 def test_a_projection_with_an_older_factor_removes_the_slip():
     mechanism = HundredLinks().mechanism()
     run = Lagrange("euler").build(mechanism, 1e-3)(4, 25)
-    # Without the correction for the older factor the slip is 3e-12 m/s.
+    # Without the correction for the older factor the slip would be 3e-12 m/s.
     assert np.abs(slip(mechanism, run)).max() < 1e-13
     assert np.abs(joint_gap(mechanism, run)).max() < 1e-13
 
@@ -105,7 +105,7 @@ def test_the_window_of_a_table_moves_with_the_rotation():
     model = present(CompiledModel.of(mechanism))
     steps = model.empty_samples(10), model.empty_samples(10)
     model.fixed_steps(RK4, 8, 1e-3, 2, 0, *steps[0])
-    model.windows.cells[:] = np.nan  # as at a rotation without cells
+    model.windows.cells[:] = np.nan  # The table has no cells at this rotation.
     model.system.rolls["first_cell"] = model.system.rolls["cell_count"] = 0
     model.fixed_steps(RK4, 8, 1e-3, 2, 0, *steps[1])
     np.testing.assert_array_equal(steps[0], steps[1])
@@ -122,8 +122,8 @@ def test_numpy_completes_a_run_if_a_table_has_no_cell(monkeypatch):
 
 @pytest.mark.parametrize("compiled", [True, False])
 def test_a_run_ends_with_a_warning_if_the_tolerance_needs_too_many_steps(compiled, monkeypatch):
-    monkeypatch.setattr("engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200)  # Numpy then ends sooner.
-    # A bar of a micrometre hangs on a bar of a metre. Its period is a thousandth, so that many steps are needed.
+    monkeypatch.setattr("engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200)  # numpy ends sooner
+    # A bar of 1e-12 m under a large gravity has a very short period, so many steps are needed.
     fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
     hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)
     assert np.isnan(hopeless.pose[-1]).all()
@@ -154,7 +154,7 @@ def test_a_command_without_steps_does_not_import_numba():
 
 
 def test_a_stiff_motion_is_reported():
-    # The time constant of the damper is a millionth of that of gravity, so stability limits explicit steps.
+    # The time constant of the damper is a millionth of the time scale, so stability limits explicit steps.
     scene = FreeFourBar()
     damped = replace(
         scene.mechanism(),

@@ -1,4 +1,4 @@
-"""Accuracy of each construction of pymunk and MuJoCo on each joint: a table of orders, errors and floors.
+"""Tests of the accuracy of each construction of joints in pymunk and MuJoCo, with a table of errors and orders.
 
 A row is compared with the exact motion of a scene, or with the exact solver if no scene has the mechanism.
 `test_promised` tests the declared orders of all engines.
@@ -73,7 +73,7 @@ def placed(name: str, mass: float, inertia: float, centre: Any, angle: float, ve
 
 
 def far_drive() -> Mechanism:
-    """A four-bar with a drive between ground and coupler, which acts on two coordinates of a tree."""
+    """A four-bar with a drive between ground and coupler. The drive acts on the sum of two coordinates of a tree."""
     linkage = four_bar(crank_rate=10.0)
     return replace(linkage, joints=(*linkage.joints, Drive("far", None, "coupler", -5.0, linkage.bodies[1].pose[2])))
 
@@ -88,14 +88,14 @@ def blade_on_a_board() -> Mechanism:
 
 
 def rod_in_a_slot() -> Mechanism:
-    """The slider-crank without a slider: the end of its rod runs in the slot."""
+    """A slider-crank without a slider. The end of the rod runs in the slot."""
     scene, linkage = DrivenSliderCrank(), DrivenSliderCrank().mechanism()
     guide = Slot("guide", None, "rod", (0.0, 0.0), 0.0, (scene.rod / 2, 0.0))
     return Mechanism(linkage.bodies[:2], (*linkage.joints[:2], guide, linkage.joints[5]), linkage.gravity)
 
 
 def plate() -> Mechanism:
-    """A plate under gravity with a slot along which the ground's point (0.3, 0.1) slides."""
+    """A plate under gravity with a slot. The point (0.3, 0.1) of the ground slides along the slot."""
     angle, rate, line, linkage = 0.5, 2.0, 0.7, (0.25, -0.1)
     offset = turned(angle, *linkage)
     velocity = 0.4 * turned(angle + line, 1.0, 0.0) - rate * across(offset)
@@ -112,12 +112,14 @@ TRAMMEL, BEAD = (
 
 @dataclass(frozen=True)
 class Row:
-    """The limits of the errors of a construction, and their orders.
+    """The limits of the errors of a construction, and the orders of the errors.
 
-    pose, twist, reaction: limits with `every` steps for a sample, from the sample `since` on, in m, rad and s, and
-        relative to the largest reaction, which is at least 1 N
-    order: orders of pose, twist and reaction, by four times as many steps, to within `room`
-    floor: the least error of poses at any step
+    pose, twist: limits in m, rad and s.
+    reaction: limit relative to the largest reaction or 1 N.
+    every: number of steps for a sample.
+    since: first sample whose reaction is checked.
+    order: orders of pose, twist and reaction within `room`, measured with four times as many steps.
+    floor: the least error of poses at any step.
     """
 
     engine: Engine
@@ -149,18 +151,18 @@ ROLLING = (RollingEllipse(), RollingDisc(), RollingInRing(), RollingOnCircle(), 
 SLEIGHS = (*(ChaplyginSleigh(offset=offset) for offset in (0.5, -0.2, 0.0)), ChaplyginSleigh(turning_rate=-1.0))
 CHAINS = (PointPendulum(), TenLinks(), NFourBar(), TenFourBars(), TwoFeet(), SLIDER, FreeSliderCrank())
 OF_PYMUNK = (
-    # The bias as shipped leaves a gap of the order of dt; at these steps the next order still shows in the motion.
+    # With the default bias the gap has the order dt. At these steps the next order still contributes to the motion.
     Row(pymunk.DEFAULT, FREE, order=(1,), room=0.25),
-    # From rest the tuned motion has a delay of half a step, and velocities are recorded half a step early.
+    # The tuned motion has a delay of half a step, and velocities are recorded half a step early.
     Row(pymunk.TUNED, FREE, 25, pose=8e-3, order=(1, 2, 1)),
     Row(pymunk.LEAPFROG, FREE, order=(2, 2, 2)),
-    # The discretisation error and the rounding of 8000 steps are each below 1e-12. A force is a change of velocity over
-    # a step of 1e-4 s, so that its rounding is 1e4 times larger.
+    # The discretisation error and the rounding of 8000 steps are below 1e-12. A force is a change of velocity over a
+    # step of 1e-4 s, so its rounding is 1e4 times larger.
     *on(pymunk.EXTENDED, (FREE, DRIVEN, MOVING), pose=1e-11, twist=1e-9, reaction=1e-8),
-    # The first samples have the error of the first steps, which has no expansion in the step.
+    # The errors of the first steps have no expansion in the step, so the first reactions are not checked.
     *on(pymunk.EXTENDED, ROLLING, 3, pose=1e-11, reaction=1e-8, since=2),
     *on(methods.ROLL_PIVOT, ROLLING[:2], order=(2,), room=0.2),
-    # The error is 3e-11, or 7e-10 if the contact is predicted for a ground at rest.
+    # The error is 3e-11. If the contact were predicted for a ground at rest, it would be 7e-10.
     Row(pymunk.EXTENDED, EllipticGears(), pose=1e-10, span=2.0),
     Row(methods.SKATE_PROJECTED, SLEIGH, order=(1,), span=3.0),
     Row(methods.SKATE_GROOVE, SLEIGH, order=(1,), span=3.0),
@@ -170,29 +172,29 @@ OF_PYMUNK = (
     # The first force is extrapolated in time from later steps, in addition to the extrapolation in the step.
     Row(pymunk.EXTENDED, CarAndTrailer(), 1, pose=1e-10, twist=1e-8, reaction=1e-4, since=1, span=5.0),
     Row(pymunk.EXTENDED, blade_on_a_board(), 1, pose=1e-9),
-    Row(methods.SKATE_CENTRE, SLEIGH, floor=1.0, span=3.0),  # without the effect of the skate
+    Row(methods.SKATE_CENTRE, SLEIGH, floor=1.0, span=3.0),  # The skate has no effect.
     Row(methods.SKATE_CENTRE, ChaplyginSleigh(offset=0.0), 10, pose=2e-2, order=(1,), span=3.0),
-    Row(methods.SKATE_POINT, SLEIGH, floor=1.0, span=3.0),  # although it does not slip
+    Row(methods.SKATE_POINT, SLEIGH, floor=1.0, span=3.0),  # It does not slip.
     Row(pymunk.EXTENDED, SLIDER, pose=1e-11, twist=1e-9, reaction=1e-7),
-    # cpGrooveJoint solves both directions and uses one, which is correct only if the normal is a principal axis.
+    # cpGrooveJoint solves both directions and uses only one. This is correct only if the normal is a principal axis.
     Row(replace(pymunk.DEFAULT, slot="groove"), rod_in_a_slot(), 1, floor=0.1),
     Row(pymunk.LEAPFROG, rod_in_a_slot(), order=(2,)),
     Row(pymunk.EXTENDED, rod_in_a_slot(), pose=1e-10, reaction=1e-6),
     *on(pymunk.EXTENDED, (BEAD, TRAMMEL), 5, pose=1e-9, reaction=1e-5),
     Row(pymunk.EXTENDED, LinkPendulum(), 5, pose=6e-12, reaction=1e-6, span=1.0),
-    # Heavy bodies on light bodies need more iterations, which the same rule provides.
+    # Heavy bodies on light bodies need more iterations. The usual rule provides them.
     Row(pymunk.LEAPFROG, OneFoot(), 3, pose=1e-3),
     Row(pymunk.Pymunk("five sweeps", iterations=5, error_bias=0.0, leapfrog=True), OneFoot(), floor=0.1),
 )
 OF_MUJOCO = (
-    # With the shipped time constant of 0.02 s and impedance of 0.9 the error does not depend on the step.
+    # With the default time constant of 0.02 s and impedance of 0.9 the error does not depend on the step.
     Row(mujoco.DEFAULT, FREE, 25, order=(0,), room=0.5, floor=1e-4),
-    # With a time constant of five steps the regularisation falls as dt^2.
+    # With a time constant of five steps the error of the regularisation is proportional to dt^2.
     Row(mujoco.TUNED, FREE, pose=1e-6, order=(2,), room=0.5),
     # The rate of the crank is overwritten, but the solver treats the crank as free. Only a stiff loop corrects this.
     Row(OVERWRITTEN, DRIVEN, 25, order=(0,), room=0.1),
     Row(replace(OVERWRITTEN, stiffness=mujoco.TUNED.stiffness), DRIVEN, 25, order=(2,)),
-    # At steps of 1e-2 s five steps are longer than the time constant of the motion, and the error at order 4 is 1e-5.
+    # Five steps of 1e-2 s are longer than the time constant of the motion. The error at order 4 is then 1e-5.
     *on(mujoco.EXTENDED, (FREE, DRIVEN), 1, pose=1e-4, span=0.05),
     Row(mujoco.EXTENDED, FREE, 5, order=(4,), room=0.5),
     *on(mujoco.EXTENDED, (FREE, DRIVEN), 10, pose=1e-8, reaction=1e-6),
@@ -200,30 +202,30 @@ OF_MUJOCO = (
     Row(mujoco.EXTENDED, far_drive(), pose=1e-7, reaction=1e-6, span=0.05),
     *on(mujoco.EXTENDED, (EllipticGears(),), pose=1e-8, reaction=1e-4, span=1.0),
     Row(mujoco.DEFAULT, RollingEllipse(), order=(0,), room=0.3, floor=0.02, span=2.0),
-    # The contact is not permanent, so that the error varies by some tens of a percent.
+    # The contact is not permanent, so the error varies by some tens of percent.
     Row(mujoco.TUNED, RollingEllipse(), 25, order=(1,), room=0.3, span=2.0),
-    # The direction has a delay of at most a step. The error is the displacement times the rotation in a step.
+    # The skate's direction has a delay of up to a step. The error is the displacement times the rotation in a step.
     Row(mujoco.TUNED, SLEIGH, order=(1,), span=3.0, pose=2e-2, reaction=5e-3, since=1),
-    # The friction along the blade is MuJoCo's least, 1e-5 of the weight.
+    # The friction along the blade has MuJoCo's smallest coefficient, 1e-5.
     Row(BLADE, SLEIGH, 25, pose=5e-3, reaction=5e-3, since=1, floor=1e-4, span=3.0),
-    # The slip is the time constant of friction, 0.02 s, times u w. It does not depend on the step.
+    # The slip is u w (speed times rate) times the time constant of friction, 0.02 s. It does not depend on the step.
     Row(mujoco.DEFAULT, SLEIGH, order=(0,), floor=5e-3, pose=5e-2, reaction=0.1, since=10, span=3.0),
     Row(SOFT, SLEIGH, 5, order=(0,), floor=1e-6, span=3.0),
     Row(mujoco.EXTENDED, blade_on_a_board(), pose=1e-9),
     *on(mujoco.EXTENDED, (SLIDER,), 25, pose=1e-10, reaction=1e-8),
     Row(TUNED_FREE, SLIDER, pose=1e-4),
-    # The drive of the rod has the least compliance. The slot is a coordinate of the tree.
+    # The drive of the rod has the smallest compliance of all variants. The slot is a coordinate of the tree.
     Row(mujoco.TUNED, BEAD, pose=1e-8, twist=1e-7, reaction=1e-7, span=0.2),
     Row(FREE_HALVES, BEAD, pose=1e-9, reaction=1e-7, span=0.2),
-    Row(TUNED_FREE, BEAD, pose=1e-6, order=(2,), room=0.3, span=0.2),  # the weld and the slot have gaps
+    Row(TUNED_FREE, BEAD, pose=1e-6, order=(2,), room=0.3, span=0.2),  # The weld and the slot have gaps.
     *on(mujoco.TUNED, (TRAMMEL,), pose=1e-6, span=0.2),
     *on(HALVES, (TRAMMEL,), pose=1e-9, span=0.2),
     Row(HALVES, plate(), pose=1e-8, reaction=1e-2, span=0.2),
     *on(mujoco.EXTENDED, (TRAMMEL, plate()), pose=1e-8, reaction=1e-2, span=0.2),
-    *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # Its spring depends on the step, as that of the weld.
-    # The linkage is flat at about 0.7 s, where the rows are dependent.
+    *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # The slot's spring depends on the step.
+    # The rows are dependent at about 0.7 s, when all bars are in line.
     Row(mujoco.EXTENDED, NFourBar(), pose=1e-6, span=1.5),
-    # At 10 ms the error at order 1 is a dt^2 / 2 for each step, and that of shipped loops is their regularisation.
+    # After 10 ms the error at order 1 is a dt^2 / 2 for each step. In default loops it comes from the regularisation.
     *on(mujoco.DEFAULT, CHAINS, pose=5e-3, span=0.01),
     *on(FREE_COORDINATES, CHAINS, pose=1e-5, span=0.01),
 )
@@ -237,7 +239,7 @@ def exact(subject: Scene | Mechanism, samples: int) -> Trajectory:
 
 
 def errors(row: Row, every: int) -> list[float]:
-    """Return the errors of poses, twists and reactions with `every` steps a sample."""
+    """Return the errors of poses, twists and reactions with `every` steps for a sample."""
     mechanism = row.subject if isinstance(row.subject, Mechanism) else row.subject.mechanism()
     end = row.span if isinstance(row.subject, Mechanism) else min(row.span, row.subject.duration)
     samples = max(1, math.floor(end / SPACING + 1e-9))
@@ -287,7 +289,7 @@ REFUSED = (
         for engine in (methods.SKATE_CENTRE, methods.SKATE_PROJECTED)
     ),
     *((engine, blade_on_a_board(), "runs on the body 'board'") for engine in (mujoco.DEFAULT, BLADE)),
-    # A crank, and a body whose only motion is that of a drive.
+    # The body is a crank, or has no pin and only moves with a drive.
     *(
         (pymunk.TUNED, twice_driven(*pins), "'second' joins two bodies whose motion is already")
         for pins in ((HUB,), ())

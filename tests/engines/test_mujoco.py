@@ -1,4 +1,4 @@
-"""The engine MuJoCo: its models, reactions and stiffness, and its warnings of failures and faulty releases.
+"""Tests of MuJoCo: models, reactions and stiffness, and warnings of failures and faulty releases.
 
 `test_matrix` tests the order and the error of each construction.
 """
@@ -38,7 +38,7 @@ def heavy_coupler(ratio: float) -> Mechanism:
 
 
 def arch(links: int, length: float = 0.02) -> Mechanism:
-    """Bars along a half circle, pinned to the ground at both ends."""
+    """A chain of bars along a half circle. Both ends are pinned to the ground."""
     angle = np.linspace(np.pi, 0, links + 1)
     points = length / (2 * np.sin(np.pi / 2 / links)) * np.stack([np.cos(angle), -np.sin(angle)], axis=-1)
     places = [(float(x), float(y)) for x, y in points]
@@ -55,12 +55,12 @@ def test_reactions_by_newtons_law_are_the_forces_that_the_engine_applied(engine:
     mechanism = four_bar(crank_rate=10.0)
     built = engine.build(mechanism, 1e-3)
     motion = built(10, 10)
-    compiled, data = built.model.compiled, built.data  # in the state of the last sample
+    compiled, data = built.model.compiled, built.data  # The state is that of the last sample.
     mujoco.mj_rnePostConstraint(compiled, data)
     rows = dict(zip(mechanism.row_names, motion.reaction[-1], strict=True))
-    unit = built.model.unit  # the unit of masses and forces in the model
+    unit = built.model.unit  # The unit of masses and forces in the model.
     loop = unit * data.efc_force[:2]
-    # Both reactions are sums of forces of about 100 N, with the rounding of some hundred operations.
+    # Both reactions are sums of forces of about 100 N. The tolerance is the rounding of some hundred operations.
     largest = np.abs(motion.reaction[-1]).max()
     assert np.abs(loop - [rows["C x"], rows["C y"]]).max() < 1e-9 * largest
     for pin, body in (("A", "crank"), ("B", "coupler"), ("D", "rocker")):
@@ -71,7 +71,7 @@ def test_reactions_by_newtons_law_are_the_forces_that_the_engine_applied(engine:
 def test_the_solver_converges_with_the_armature_of_a_drive() -> None:
     linkage = four_bar(crank_rate=0.1)
     (crank, coupler), pins = linkage.bodies[:2], linkage.joints[:2]
-    # The rotation of the outer bar relative to the ground is a sum of two coordinates, which a clock drives.
+    # The rotation of the outer bar relative to the ground is a sum of two coordinates. A clock drives this sum.
     clocked = Drive("drive", None, "coupler", coupler.twist[2], coupler.pose[2])
     driven = Drive("drive", None, "crank", 0.1, crank.pose[2])
     for mechanism in (
@@ -82,7 +82,7 @@ def test_the_solver_converges_with_the_armature_of_a_drive() -> None:
         solved = model.start().qacc
         model.compiled.opt.tolerance = 0.0
         exact = model.start().qacc
-        # Newton's method solves linear rows in one iteration, except for rounding.
+        # For linear rows one iteration of Newton's method gives the solution to rounding.
         assert np.abs(solved - exact).max() < 1e-12 * np.abs(exact).max()
         model.compiled.opt.tolerance = DEFAULT.tolerance
         assert np.abs(model.start().qacc - exact).max() > 1e-3 * np.abs(exact).max()
@@ -91,16 +91,16 @@ def test_the_solver_converges_with_the_armature_of_a_drive() -> None:
 @pytest.mark.parametrize(
     ("engine", "own", "size"),
     [
-        (EXTENDED, FREE.mechanism(), (3, 3, 2, 3)),  # only the pin that closes the loop is a constraint
+        (EXTENDED, FREE.mechanism(), (3, 3, 2, 3)),  # Only the pin that closes the loop is a constraint.
         (FREE_COORDINATES, FREE.mechanism(), (3, 9, 8, 12)),
         (EXTENDED, FreeSliderCrank().mechanism(), (3, 3, 2, 3)),  # A slider that keeps its angle is one coordinate.
         # Four pins and the slot have rows. The angle of the slider is driven at rate zero by an armature.
         (FREE_COORDINATES, FreeSliderCrank().mechanism(), (3, 9, 8, 10)),
         (EXTENDED, far_drive(), (4, 4, 3, 4)),  # A clock drives the sum of two coordinates.
-        # A contact has four rows for the edges of a pyramid, or a normal row and two friction rows. One of these is
-        # empty, since it is normal to the plane. EXTENDED has two user rows.
+        # A contact has four rows for the edges of a pyramid, or a normal row and two friction rows. One friction row is
+        # zero, since it is normal to the plane of motion. EXTENDED has two user rows.
         *((engine, RollingDisc().mechanism(), (1, 3, 2, n)) for engine, n in ((DEFAULT, 4), (TUNED, 3), (EXTENDED, 2))),
-        (TUNED, SlottedLever().mechanism(), (3, 4, 4, 6)),  # a split body and a weld
+        (TUNED, SlottedLever().mechanism(), (3, 4, 4, 6)),  # A body is split, and a weld joins its parts.
         (SLOTS[0], SlottedLever().mechanism(), (2, 2, 2, 1)),
     ],
 )
@@ -118,7 +118,7 @@ def test_a_pin_between_a_body_and_the_ground_is_the_same_whichever_is_named_firs
         for pin in mechanism.joints
     )
     motions = [FREE_COORDINATES.build(m, 1e-3)(20, 10) for m in (mechanism, replace(mechanism, joints=turned))]
-    # The signs of the rows differ, and the anchor is rounded in another frame.
+    # The signs of the rows differ, and the anchors are rounded in different frames.
     assert np.abs(motions[0].pose - motions[1].pose).max() < 1e-9
     grounded = [name.startswith(("A", "D")) for name in mechanism.row_names]
     signs = np.where(grounded, -1.0, 1.0)
@@ -132,7 +132,7 @@ def test_a_slot_on_a_fixed_line_holds_the_centre_of_a_free_body() -> None:
     mechanism = Mechanism((bead,), (slot,), (0.0, -9.81))
     motion = FREE_COORDINATES.build(mechanism, 1e-3)(20, 10)
     distance = 0.5 * motion.t - 9.81 * along[1] * motion.t**2 / 2
-    # The bound is the weight across the wire divided by the stiffness of the spring.
+    # The gap is the weight across the wire divided by the stiffness of the spring.
     assert np.abs(motion.pose[:, 0, :2] - [0.2, 0.3] - distance[:, None] * along).max() < 1e-7
     assert np.abs(motion.pose[:, 0, 2] - 3.0 * motion.t).max() < 1e-9
 
@@ -143,7 +143,7 @@ def test_a_tendon_rod_has_no_velocity_term_and_a_user_row_has_it() -> None:
     mechanism = Mechanism((body,), (Rod("r", None, "b", (0.0, 0.0), (0.0, 0.0), 1.0),))
     ours, tendon = (replace(EXTENDED, rods=rods).build(mechanism, 1e-3)(1, 1) for rods in ("rows", "tendon"))
     assert ours.reaction[0, 0] == pytest.approx(-4.0, rel=1e-6)
-    # If this fails, the release of MuJoCo has the term, and rods need no user rows.
+    # If this fails, MuJoCo now computes the velocity term, and rods need no user rows.
     assert abs(tendon.reaction[0, 0]) < 1e-6
 
 
@@ -163,7 +163,7 @@ def test_an_overwritten_crank_opens_the_loop_at_any_step() -> None:
         engine = replace(DEFAULT, drive="overwrite")
         motion = engine.build(mechanism, DRIVEN.spacing / every)(DRIVEN.samples, every)
         gaps.append(np.abs(mechanism.gap(motion.pose, motion.t)[:, :8]).max())
-        # The angle of the crank is that which is written at the time of the sample.
+        # The angle of the crank is written at the time of the sample.
         assert np.abs(mechanism.gap(motion.pose, motion.t)[:, 8]).max() < 1e-12
         assert any(warning.startswith("ours:") for warning in motion.warnings)
     assert gaps[1] > 0.5 * gaps[0] > 5e-3
@@ -175,7 +175,7 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
     spring, damper = stiffness.gains(mechanism, dt)
     assert damper**2 == pytest.approx(4 * spring, rel=1e-14)
     first, second = stiffness.reference(mechanism, dt)
-    if first < 0:  # the direct form; the other form is a time constant of at least two steps, and a damping ratio
+    if first < 0:  # Negative numbers are stiffness and damping. Others are a time constant and a damping ratio.
         assert (-first, -second) == pytest.approx((spring, damper), rel=1e-14)
     else:
         assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
@@ -183,8 +183,8 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
 
 @pytest.mark.parametrize(("steps", "dt"), [(2.0, 1e-2), (5.0, 1e-4), (20.0, 1e-2)])
 def test_the_first_acceleration_of_a_loop_with_the_integrator_discrete(steps, dt):
-    # For the exact loop J a = -bias at a closed start. Backward Euler divides this by 1 + h b + h^2 k for a spring with
-    # stiffness k and damping b per inertia. It is (1 + 1 / steps)^2, which does not depend on the step.
+    # The exact loop with a closed start satisfies J a = -bias. Backward Euler with the step h divides J a by
+    # 1 + h b + h^2 k, with the stiffness k and damping b of the spring. This divisor is (1 + 1 / steps)^2 for any step.
     def first(integrator):
         engine = MuJoCo("loop", integrator=integrator, stiffness=TiedToStep(steps))
         run = engine.build(DrivenFourBar().mechanism(), dt)
@@ -214,7 +214,7 @@ def test_a_loop_of_a_hundred_links_is_solved_by_pgs_and_not_by_newton() -> None:
     built = EXTENDED.build(chain, 1e-3)
     assert built.model.compiled.opt.solver == mujoco.mjtSolver.mjSOL_PGS
     motion = built(2, 10)
-    # A step of 1 ms is 1/45 of the time scale, so the error comes from the integrator and not from the solver.
+    # The step of 1 ms is 1/45 of the time scale. So the integrator causes the error, and not the solver.
     assert [warning for warning in motion.warnings if "unresolved" not in warning] == []
     assert np.abs(chain.gap(motion.pose, motion.t)).max() < 1e-8
     newton = replace(EXTENDED, solvers=("Newton",)).build(chain, 1e-3)
@@ -223,7 +223,7 @@ def test_a_loop_of_a_hundred_links_is_solved_by_pgs_and_not_by_newton() -> None:
 
 def test_samples_after_a_reset_are_nan(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    rate = 0.999e10  # rad/s; a torque increases it to 1e10, where MuJoCo resets the state
+    rate = 0.999e10  # A torque increases the rate [rad/s] to 1e10. Then MuJoCo resets the state.
     body = Body("bar", 1.0, 1 / 12, (0.5, 0.0, 0.0), (0.0, rate / 2, rate))
     torque = Torque("torque", None, "bar", 3e9)
     mechanism = Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-0.5, 0.0)),), (0.0, 0.0), (torque,))
@@ -233,7 +233,7 @@ def test_samples_after_a_reset_are_nan(tmp_path, monkeypatch) -> None:
     assert np.isnan(motion.twist[1:]).all()
     assert np.isnan(motion.reaction[1:]).all()
     assert any("QVEL" in warning for warning in motion.warnings)
-    assert list(tmp_path.iterdir()) == []  # MuJoCo would write MUJOCO_LOG.TXT in the working folder
+    assert list(tmp_path.iterdir()) == []  # MuJoCo would write MUJOCO_LOG.TXT.
 
 
 @pytest.mark.parametrize(("version", "reason"), [("3.6.0", "velocity term"), ("4.0.0", "Hessian")])

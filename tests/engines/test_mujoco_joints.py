@@ -1,4 +1,4 @@
-"""Rolls, skates and drives in MuJoCo: contacts, tendons and user rows, their limits, and extreme scales.
+"""Tests of rolls, skates and drives in MuJoCo as contacts, tendons and user rows, and tests of extreme scales.
 
 `test_matrix` tests the order and the error of each construction.
 """
@@ -43,7 +43,7 @@ def run(engine: MuJoCo, scene: Any, dt: float) -> tuple[Trajectory, Trajectory]:
 
 
 def disc_in_ring(clearance: float, rate: float = 1.0) -> Mechanism:
-    """A disc in a ring without gravity, which turns steadily. `clearance`: the relative difference of the radii."""
+    """A disc that turns steadily in a ring without gravity. clearance: relative difference of the radii."""
     rolling = Rolling.at_angle(Circle(1 - clearance), Placed(Ring(1.0), turn=-math.pi / 2))
     disc, roll = rolling_disc(rolling, rate)
     return Mechanism((disc,), (roll,), (0.0, 0.0))
@@ -53,10 +53,10 @@ def disc_in_ring(clearance: float, rate: float = 1.0) -> Mechanism:
 def test_reactions_by_newtons_law_are_the_contact_forces(engine: MuJoCo) -> None:
     built = engine.build(RollingDownhill().mechanism(), 1e-3)
     motion = built(3, 10)
-    force = np.zeros(6)  # in the frame of the contact; the first component is normal, from the ground to the body
+    force = np.zeros(6)  # In the frame of the contact. The first component is normal, from the ground to the body.
     mujoco.mj_contactForce(built.model.compiled, built.data, 0, force)
     tangent, normal = motion.reaction[-1]
-    # `data` has the state of the last sample. The slip of 1e-3 m changes directions by 1e-3 rad.
+    # `data` has the state of the last sample. A slip of 1e-3 m changes directions by 1e-3 rad.
     assert normal == pytest.approx(force[0], rel=5e-3)
     assert abs(tangent) == pytest.approx(float(np.hypot(force[1], force[2])), abs=5e-3 * normal)
 
@@ -66,7 +66,7 @@ def test_a_contact_differs_from_ideal_rolling_only_after_the_hop() -> None:
     assert hill.hop is not None
     motion, truth = run(TUNED, hill, dt=1e-3)
     error = np.abs(motion.pose - truth.pose)[:, 0, :2].max(axis=1)
-    # In MuJoCo's friction cone, friction at a vanishing normal force keeps the body in contact for some 0.06 s longer.
+    # In MuJoCo, friction at a vanishing normal force prolongs the contact of the body by about 0.06 s.
     assert error[motion.t < hill.hop].max() < 2e-3
     assert error[-1] > 0.05
     assert any("was lost" in warning for warning in motion.warnings)
@@ -89,7 +89,7 @@ def test_a_body_that_reaches_a_corner_ends_the_run() -> None:
     rolling = Rolling.at_angle(Circle(0.1), Placed(Side(0.08), turn=math.pi))
     disc, roll = rolling_disc(rolling, 4.0)
     motion = EXTENDED.build(Mechanism((disc,), (roll,)), 1e-3)(12, 10)
-    # At 4 rad/s the disc reaches the end of the side, 0.04 m away, after 0.1 s.
+    # At 4 rad/s the disc reaches the end of the side after 0.1 s. The distance is 0.04 m.
     assert motion.reset_at == pytest.approx(0.1, abs=2e-3)
     assert np.all(np.isfinite(motion.pose[motion.t < 0.095]))
     assert np.all(np.isnan(motion.pose[motion.t > 0.105]))
@@ -105,7 +105,7 @@ def test_a_skate_on_a_moving_body_by_rows_and_by_a_tendon() -> None:
 
 @pytest.mark.parametrize(("mass", "length"), [(1.0, 1.0), (1e5, 1.0), (1.0, 1e-3)])
 def test_a_blade_touches_the_ground_at_one_end_for_any_weight(mass: float, length: float) -> None:
-    """A blade that touches at two points could not turn."""
+    """If the blade touched the ground at two points, it could not turn."""
     sled = Body("sled", 1.0, 0.1 * length**2, (0.0, 0.0, 0.0))
     load = Body("load", mass, 0.1 * mass, (0.0, 2 * length, 0.0))
     mechanism = Mechanism((sled, load), (Skate("blade", None, "sled", (0.0, length), 0.0),))
@@ -122,7 +122,7 @@ def test_the_slip_of_a_user_row_agrees_with_its_declared_regularisation():
     motion = engine.build(mechanism, 1e-3)(CHAPLYGIN_SLEIGH.samples, 10)
     rows = mechanism.rows(mechanism.pose)
     inverse = float(((rows / mechanism.inertias.reshape(-1)) @ rows.T)[0, 0])
-    # The slip obeys slip' + damping slip = compliance A F. With a varying force it reaches half of its limit.
+    # The slip satisfies slip' + damping slip = compliance A F. It reaches half of its limit, since the force varies.
     limit = soft.compliance * inverse * np.abs(motion.reaction).max() / soft.damping
     assert 0.3 * limit < np.abs(mechanism.slip(motion.pose, motion.twist)).max() < limit
 
@@ -131,7 +131,7 @@ def test_the_slip_of_a_user_row_agrees_with_its_declared_regularisation():
 
 
 def test_a_spring_at_an_arm_of_a_tenth_of_a_micrometre_turns_its_body() -> None:
-    """MuJoCo's compiler moves a site within 1e-6 m of the origin of its body to the origin."""
+    """If a site is within 1e-6 m of the origin of its body, MuJoCo's compiler moves the site to the origin."""
     text = """<mujoco><worldbody><body><joint type="hinge" axis="0 0 1"/><inertial pos="0 0 0" mass="1"
         diaginertia="1 1 1"/><site pos="0 {} 0"/></body></worldbody></mujoco>"""
     as_compiled = [mujoco.MjModel.from_xml_string(text.format(arm)).site_sameframe[0] for arm in (0.99e-6, 1.01e-6)]
@@ -142,11 +142,11 @@ def test_a_spring_at_an_arm_of_a_tenth_of_a_micrometre_turns_its_body() -> None:
     mechanism = Mechanism((Body("body", 1.0, 1e-7, (0.0, 0.0, 0.0)),), (pin,), (0.0, 0.0), (spring,))
     for engine in (DEFAULT, EXTENDED):
         data = engine.build(mechanism, 1e-3).data
-        assert abs(data.qacc[0] + 1.0) < 1e-12  # a force of -1 N with an arm of 1e-7 m on an inertia of 1e-7 kg m^2
+        assert abs(data.qacc[0] + 1.0) < 1e-12  # -1 N * 1e-7 m / (1e-7 kg m^2)
 
 
 def test_the_compliance_of_a_drive_does_not_depend_on_the_size_of_the_wheels() -> None:
-    """In SI units the inverse inertia of the row would be so small that MuJoCo would increase the compliance."""
+    """In SI units the row's inverse inertia would be so small that MuJoCo would use a larger compliance."""
     missed = []
     for size in (1.0, 1e6):
         bodies = tuple(
@@ -164,7 +164,7 @@ def test_the_compliance_of_a_drive_does_not_depend_on_the_size_of_the_wheels() -
 
 
 def test_the_first_accelerations_of_light_bodies_are_converged_in_extended() -> None:
-    """From a start at zero, Newton's method ends with a relative error of 1e-5 for light bodies."""
+    """If Newton's method starts at zero, it ends with a relative error of 1e-5 for light bodies."""
     mechanism = drawn(1199539626, 2, ALL_KINDS, 4)
     dt = 0.01 * mechanism.time_scale
     run, once = EXTENDED.build(mechanism, dt), EXTENDED.model(mechanism, dt)

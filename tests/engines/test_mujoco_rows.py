@@ -1,4 +1,4 @@
-"""User rows in MuJoCo: their agreement with the rows of the mechanism, with and without numba, and their failures."""
+"""Tests that user rows in MuJoCo agree with the rows of the mechanism, with and without numba."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ STIFFNESS, DAMPING = 5.0, 3.0
 
 
 def jumble() -> Mechanism:
-    """A mechanism with an arm, a block that slides in it, a bar on the block, a free body, and skates between them."""
+    """A mechanism with an arm, a block that slides in the arm, a bar on the block, a free body, and skates."""
     bodies = (
         bar("arm", (0.0, 0.0), (1.0, 0.4)),
         Body("block", 0.7, 0.05, (0.5, 0.2, 0.3)),
@@ -89,7 +89,7 @@ def test_user_rows_are_the_rows_of_the_mechanism_in_tree_coordinates() -> None:
         index = dict(zip((None, *(body.name for body in mechanism.bodies)), range(5), strict=True))
         # The first body is the ground.
         pose, twist, change = (np.vstack([np.zeros(3), values[0]]) for values in tree.motion(q[None], v[None], a[None]))
-        # The mechanism's rows are in maximal coordinates, and a complex step gives the rates of change of the rows.
+        # The mechanism's rows are in maximal coordinates. A complex step computes the time derivatives of these rows.
         for row, joint in enumerate(joints):
             ends = [index[joint.first], index[joint.second]]
             poses, twists, velocity, step = pose[ends], twist[ends], twist[ends].ravel(), 1e-100
@@ -100,7 +100,7 @@ def test_user_rows_are_the_rows_of_the_mechanism_in_tree_coordinates() -> None:
             if not isinstance(joint, Skate):
                 wanted -= STIFFNESS * joint.gap(*poses, 0.0)[0]
             assert jacobian[row] @ v == pytest.approx(slip, rel=1e-12, abs=1e-12)
-            # J a - right is equal in both kinds of coordinates, since accelerations of bodies contain velocity terms.
+            # The residual J a - right is equal in both kinds of coordinates. Accelerations contain velocity terms.
             expected = line @ change[ends].ravel() - wanted
             assert jacobian[row] @ a - right[row] == pytest.approx(expected, rel=1e-11, abs=1e-11)
 
@@ -112,19 +112,19 @@ def test_user_rows_of_a_roll_are_those_of_the_joint_with_its_velocity_term() -> 
     joint = UserRowJoint("roll", roll.first, roll.second, (100.0, 20.0), rolled(roll.rolling))
     writer = RowWriter(spanning_tree(mechanism), range(6), [joint])
     pose, twist, _ = gears.kinematics(np.linspace(0.0, 1.7, 12))
-    # The joint's rows are along e_t and e_n, the user rows along x and y.
+    # The joint's rows are along e_t and e_n, and the user rows are along x and y.
     contact = roll.rolling.contact(pose[:, 1, 2] - pose[:, 0, 2])
     angle = contact.tangent_angle + pose[:, 0, 2]
     for i in range(len(pose)):
         ours, right = writer.rows((pose[i] - mechanism.pose).ravel(), twist[i].ravel())
         basis = np.array([[np.cos(angle[i]), np.sin(angle[i])], [np.sin(angle[i]), -np.cos(angle[i])]])
-        # Exact motion has no gap and no slip, so the springs add only rounding times the stiffness of 100 / s^2.
+        # The exact motion has no gap and no slip. So the springs add only rounding times their stiffness of 100 / s^2.
         assert np.abs(basis @ ours - mechanism.rows(pose[i])).max() < 1e-13
         assert np.abs(basis @ right - mechanism.bias(pose[i], twist[i])).max() < 1e-11
 
 
 def moved() -> list[list[Any]]:
-    """Motions with rows of each kind, and one that diverges."""
+    """Motions with rows of each kind, and a motion that diverges."""
     scenes = Cart(), RollingEllipse(), SlottedLever()
     motions = [EXTENDED.build(scene.mechanism(), 1e-3)(2, 10) for scene in scenes]
     wild = Body("sleigh", 1.0, 1.0, (0.0, 0.0, 0.0), (9e4, 0.0, 9e4))
@@ -146,7 +146,7 @@ def test_without_numba_python_writes_the_same_rows() -> None:
     plain = json.loads(subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout)
     fast = moved()
     for (pose, reaction, reset, warnings), same in zip(fast, plain, strict=True):
-        # Both results differ by one or two roundings.
+        # The results with and without numba differ by one or two roundings.
         np.testing.assert_allclose(pose, same[0], rtol=0, atol=1e-13)
         np.testing.assert_allclose(reaction, same[1], rtol=0, atol=1e-11 * np.nanmax(np.abs(reaction)))
         assert [reset, list(warnings)] == same[2:]

@@ -1,4 +1,4 @@
-"""Properties of MuJoCo on which the adapter relies: time constants, impedance, friction, sparse factorisation."""
+"""Tests of properties of MuJoCo that the adapter needs: time constants, impedance, friction, sparse factorisation."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ EQUALITY_AND_CONTACT = """
 def one_of_each(
     integrator="Euler", refsafe="enable", constant=0.02, impedance="0.9 0.9 0.001", gap=0.0
 ) -> tuple[Any, Any]:
-    """MuJoCo's numbers (stiffness, damping, impedance, ...) for the rows of an equality with a gap and of a contact."""
+    """MuJoCo's parameters `efc_KBIP` (stiffness, damping, impedance) for the rows of an equality and of a contact."""
     text = EQUALITY_AND_CONTACT.format(integrator=integrator, refsafe=refsafe, constant=constant, impedance=impedance)
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
@@ -46,7 +46,7 @@ def test_upstream_the_smallest_time_constants_of_equalities_and_contacts(integra
     for refsafe in ("enable", "disable"):
         of_equality = of_contact = 2e-3
         if integrator == "discrete":
-            of_equality, of_contact = 1e-4, 1e-3 / 0.9**0.5  # the contact's stiffness is then 1 / dt^2
+            of_equality, of_contact = 1e-4, 1e-3 / 0.9**0.5  # Then the stiffness of the contact is 1 / dt^2.
         if refsafe == "disable":
             of_equality = of_contact = 1e-4
         # The damping of a row is 2 / (dmax timeconst).
@@ -72,19 +72,19 @@ def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone:
     )
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    # MuJoCo divides both dampings by dmax, whose default is 0.95.
+    # MuJoCo divides both damping constants by dmax. The default of dmax is 0.95.
     assert set(np.round(data.efc_KBIP[:, 1] * 0.95, 9)) == rates
 
 
 # For some trees with branches, the Newton solver of release 4.0.0 computed wrong accelerations without a warning. The
 # sparse Cholesky factor of its Hessian was wrong (changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767).
 
-# Largest difference of dense and sparse accelerations, relative to the largest one: rounding times a condition number.
+# Largest difference of dense and sparse accelerations, relative to the largest acceleration. It is amplified rounding.
 AGREEMENT = 1e-8
 STATE_SPREAD = (
-    0.3  # rad or m, the distance of the random states from the initial one, so that no symmetry hides an error
+    0.3  # Distance of the random states from the initial state [rad or m], so that no symmetry hides an error.
 )
-# The smallest tree with the error in 4.0.0 has three links on the tip of the first link, a fifth link, and two loops.
+# The smallest tree with the error in 4.0.0 has five links and two loops. Three links are at the tip of the first link.
 PARENTS = (-1, 0, 0, 0, 2)
 CROSSING = ((2, 1), (3, 1))
 
@@ -106,7 +106,7 @@ def branching_tree() -> Any:
 
 
 def disagreement(model: Any, states: int = 5) -> float:
-    """The largest relative difference of dense and sparse accelerations in the initial state and random states."""
+    """The largest relative difference of dense and sparse accelerations in the initial state and in random states."""
     random, worst, pairs = np.random.default_rng(0), 0.0, []
     for kind in (mujoco.mjtJacobian.mjJAC_DENSE, mujoco.mjtJacobian.mjJAC_SPARSE):
         changed = copy.copy(model)

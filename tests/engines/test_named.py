@@ -1,4 +1,4 @@
-"""Scenes and engines that are not registered: from modules and files, with other parameters, and invalid names."""
+"""Tests of scenes and engines that are not registered, with other parameters, and with invalid names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from reports.model.ending import FINE, REFUSED
 from tests.reports.test_command_line import call, one_line
 from tests.toys import Toy
 
-# Files of a user: a scene and an engine that inherit from classes of this project.
+# The file of a user with a scene and an engine that inherit from classes of this project.
 FALLING = """
 from dataclasses import dataclass
 from typing import ClassVar
@@ -46,7 +46,7 @@ ENGINES = [Mine("euler", "projection"), Mine("rk4", "projection")]
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """An empty current folder; afterwards modules imported from it, and its entry in the path, are removed."""
+    """An empty current folder. Afterwards its entry in sys.path and the modules imported from it are removed."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     loaded = set(sys.modules)
@@ -118,7 +118,7 @@ def test_the_message_for_an_invalid_engine_has_its_place(here, text, reference, 
 
 
 def test_a_file_gives_all_scenes_of_its_top_level_once(here):
-    # A class without an instance in the file is a scene with its default values. Imported names are not scenes.
+    # A class without an instance in the file gives a scene with default parameters. Imported classes give no scene.
     path = written(
         here, "several.py", FALLING + "\nclass Other(Falling):\n    name = 'other'\n\nSHORT = Other(length=0.5)"
     )
@@ -162,7 +162,7 @@ PAGE_OF_IT = "pendulum_1_length_0.5_rate_2"
 
 @pytest.fixture
 def no_pages(monkeypatch):
-    """Replace the pages by none, since rendering is not tested here."""
+    """Remove all pages, since these tests do not test rendering."""
     monkeypatch.setattr(catalogue, "PAGES", ())
 
 
@@ -197,7 +197,7 @@ def test_a_scene_and_an_engine_of_a_file_are_run_and_reported_until_the_file_is_
     assert capfd.readouterr().err == ""
     assert "| mine rk4 projection |" in (here / "crosscheck-results" / "falling.md").read_text(encoding="utf-8")
     path.unlink()
-    assert call("report") == REFUSED  # there are no other results
+    assert call("report") == REFUSED  # No other results are stored.
     lines = capfd.readouterr().err.splitlines()
     assert [line.startswith("crosscheck: left out, since it is not as it was") for line in lines] == [True, True, False]
     assert "mine_3.py: there is no such file" in lines[0]
@@ -221,7 +221,7 @@ def test_unknown_names_are_refused_in_one_line(here, words, telling, capfd):
 
 
 class Registered:
-    """An entry point of a distribution, as importlib.metadata gives it."""
+    """A replacement for an entry point of importlib.metadata."""
 
     def __init__(self, distribution: str, name: str, value: str) -> None:
         self.dist, self.name, self.value = type("Distribution", (), {"name": distribution}), name, value
@@ -266,4 +266,4 @@ def test_a_run_into_a_file_prints_its_progress(monkeypatch, capsys):
         now[0] += PULSE
         watch([])
     assert capsys.readouterr().out.splitlines() == ["3 of 7 cells run after 12 s", "3 of 7 cells run after 22 s"]
-    assert len(checked) == 7  # Ctrl-C is looked for each time
+    assert len(checked) == 7  # Each time it is checked whether Ctrl-C was pressed.
