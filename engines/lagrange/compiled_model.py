@@ -1,4 +1,4 @@
-"""A mechanism for compiled code: the calls, the cells of rolling tables, and the warnings of a run."""
+"""A mechanism for compiled code: calls of compiled functions, cells of rolling tables, and warnings."""
 
 from __future__ import annotations
 
@@ -33,21 +33,22 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
-# Ratio of the tolerance of a step to that of the run. The errors of all steps then add up to about the tolerance.
+# Tolerance of a step relative to the tolerance of the run. The sum of the steps' errors is then about the run's
+# tolerance.
 STEP_SHARE = 0.1
-# The smallest tolerance of a step: about ten rounding errors.
+# Smallest tolerance of a step, about ten rounding errors.
 LEAST_STEP_TOLERANCE = 2e-15
-# Largest number of moves of a table's window for one sample. More are needed only in a diverged motion.
+# Largest number of moves of a table's window per sample. Only a diverged motion needs more moves.
 MOST_MOVES = 8
 # Largest number of cells in the window of a table (10 MB).
 MOST_CELLS = 2**15
 
 
 class CellWindows:
-    """For each rolling table, a window of cells for compiled code.
+    """Windows of cells in the rolling tables, for compiled code.
 
-    Compiled code stops at a rotation outside the window, and the window is moved. A table has no cells near the end of
-    a curve, where only the exact contacts of `reference.rolling` can be used.
+    Compiled code stops at a rotation outside the window, and then the window is moved. Near the end of a curve a table
+    has no cells, and only the exact contacts of `reference.rolling` can be used.
     """
 
     def __init__(self, rolls: Sequence[Rolling], records: Records) -> None:
@@ -66,18 +67,18 @@ class CellWindows:
             return False
         cell = math.floor(theta / table.width)
         first, count = int(record["first_cell"]), int(record["cell_count"])
-        if first <= cell < first + count:  # the cell is in the window, but it is beyond the limits of rolling
+        if first <= cell < first + count:  # the cell is outside the limits of rolling
             return False
-        if abs(cell - first) * table.width > 2 * math.pi:  # a diverged motion, which does not return
+        if abs(cell - first) * table.width > 2 * math.pi:  # the motion has diverged
             count = 0
-        # The first window has one block on either side of the rotation. Each move doubles the width.
+        # The first window has a block on both sides of the rotation. Each move doubles the width.
         half_width = min(max(CELLS_IN_BLOCK, count), MOST_CELLS // 2)
         low, high = cell - half_width, cell + half_width
         if count and high - low + count <= MOST_CELLS:
             low, high = min(low, first), max(high, first + count)
         try:
             cells = table.cells(low, high - low)
-        except (ValueError, ArithmeticError):  # the curves cannot touch somewhere in the window
+        except (ValueError, ArithmeticError):  # at some rotation in the window the curves cannot touch
             return False
         if np.isnan(cells[cell - low, 0].real):
             return False
@@ -90,7 +91,7 @@ class CellWindows:
 
 
 def stopped_warning(tolerance: float | None, t: float) -> RunWarning:
-    """The warning of a run that stopped at t [s]; `tolerance` is None if its steps are fixed."""
+    """The warning of a run that stopped at t [s]; `tolerance` is None for fixed steps."""
     if tolerance is None:
         text = f"lagrange: the motion is lost at {t:.6g} s; give a shorter step, or end the run there"
     else:
@@ -111,7 +112,7 @@ def open_warning(t: float) -> RunWarning:
 
 
 def singular_warning(t: float) -> RunWarning:
-    """The warning of a run of fixed steps in which a step ended beside a singular position at t [s]."""
+    """The warning of a run with fixed steps in which a step ended near a singular position at t [s]."""
     text = (
         f"lagrange: a step ends beside a singular position at {t:.6g} s, where rounding becomes motion; "
         "a longer step may have a smaller error"
@@ -121,12 +122,12 @@ def singular_warning(t: float) -> RunWarning:
 
 @dataclass
 class CompiledModel:
-    """The records of a mechanism, and the compiled functions that use them."""
+    """The records of a mechanism, and calls of the compiled functions that use them."""
 
     mechanism: Mechanism
     system: System
     storage: StepStorage
-    positions: NDArray[np.int64]  # (rows,) row of the system for each row of the mechanism
+    positions: NDArray[np.int64]  # (rows,) rows of the system by row of the mechanism
     windows: CellWindows
     functions: CompiledFunctions = field(default_factory=compiled)
 
@@ -160,7 +161,7 @@ class CompiledModel:
 
     @property
     def lacks_contact(self) -> bool:
-        """Whether the last call ended at a rotation for which no table has a cell."""
+        """Whether the last call ended at a rotation without a cell."""
         return bool(self.system.status["missing_roll"] >= 0)
 
     @property
@@ -186,7 +187,7 @@ class CompiledModel:
         return tuple(warnings)
 
     def empty_samples(self, samples: int) -> tuple[Array, Array]:
-        """Poses and twists (samples + 1, bodies, 3): the start, and NaN after it."""
+        """Poses and twists (samples + 1, bodies, 3) with the start, and NaN at later samples."""
         poses, twists = np.full((2, samples + 1, *self.mechanism.pose.shape), np.nan)
         poses[0], twists[0] = self.mechanism.pose, self.mechanism.twist
         return poses, twists
@@ -194,16 +195,16 @@ class CompiledModel:
     def fixed_steps(
         self, tableau: Tableau, iterations: int, dt: float, every: int, begin: int, poses: Array, twists: Array
     ) -> int:
-        """Fill the samples after `begin` with `every` steps of dt [s] each; returns the last completed sample.
+        """Fill the samples after `begin` by `every` steps of dt [s] per sample; return the last completed sample.
 
-        iterations: the largest number of Newton iterations of a projection
+        iterations: largest number of Newton iterations of a projection
         poses, twists: contiguous arrays (samples, bodies, 3)
         A run stops early if a contact has no cell or if the motion diverges.
         """
         return self._call(self.functions.fixed_steps, begin, poses, twists, tableau, iterations, dt, every)
 
     def adaptive_steps(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
-        """Fill the samples, `spacing` [s] apart, with adaptive steps; see `fixed_steps`."""
+        """Fill the samples, which are `spacing` [s] apart, by adaptive steps; see `fixed_steps`."""
         step_tolerance = max(STEP_SHARE * tolerance, LEAST_STEP_TOLERANCE)
         self.system.status["accepted_steps"] = 0
         settings = ADAPTIVE_DOP853, PROJECTION_ITERATIONS, step_tolerance, spacing
@@ -217,7 +218,7 @@ class CompiledModel:
         return reactions[:, self.positions], accelerations.reshape(poses.shape)
 
     def _call(self, function: Callable[..., int], begin: int, poses: Array, twists: Array, *settings: Any) -> int:
-        """Call the function again from the last completed sample after each move of a window."""
+        """Call the function; after each move of a window, call it again from the last completed sample."""
         if not (poses.flags.c_contiguous and twists.flags.c_contiguous):
             raise ValueError("poses and twists are not contiguous arrays; copy them, since the function fills them")
         states = poses.reshape(len(poses), -1), twists.reshape(len(twists), -1)
@@ -235,9 +236,9 @@ class CompiledModel:
 
 @cache
 def compile_functions(adaptive: bool) -> None:
-    """Compile the functions of a run (ten seconds of CPU time), or read their machine code.
+    """Compile the functions of a run (ten seconds of CPU time), or read their machine code from files.
 
-    Garbage collection is off meanwhile, since it takes a twelfth of the time and frees little.
+    Garbage collection is off during the compilation, since it would take a twelfth of the time.
     """
     model = CompiledModel.of(Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), ()))
     if model is None:

@@ -18,8 +18,8 @@ from reference.rows import RANK_TOLERANCE, rank, solve_symmetric
 Array = NDArray[np.float64]
 
 PROJECTION_ITERATIONS = 8
-# Largest number of steps of an adaptive run in numpy, and the additional number for each sample. They take a few
-# seconds for a few bodies.
+# Largest number of steps of an adaptive run in numpy, and additional number per sample. The steps take a few seconds
+# for a few bodies.
 MOST_NUMPY_STEPS, NUMPY_STEPS_PER_SAMPLE = 2_000, 100
 
 (_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
@@ -45,7 +45,7 @@ FIXED_DOP853 = Tableau(DOP853.A.copy(), DOP853.B.copy(), DOP853.C.copy())
 class Embedded(NamedTuple):
     """DOP853 with error estimates and dense output (Hairer, Norsett and Wanner, part I, section II.6).
 
-    The thirteenth stage is at the end of the step. The last three stages are for dense output.
+    Stage 13 is at the end of the step, and three further stages are for dense output.
     """
 
     stages: Array  # (16, 16).
@@ -67,11 +67,11 @@ ADAPTIVE_DOP853 = _embedded()
 
 
 def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot: float = 0.0) -> Array:
-    """The solution x of matrix x = right for a symmetric, positive semidefinite matrix (rows, rows).
+    """Solve matrix x = right for a symmetric, positive semidefinite matrix (rows, rows).
 
     right: (rows,) or (rows, n)
-    The Cholesky factorisation is used. The solution is that of minimum norm if rows are known to be `dependent`, or if
-    a pivot is below `least_pivot` times the diagonal. It is NaN if the matrix is not finite.
+    The solution uses the Cholesky factorisation. If rows are known to be `dependent`, or if a pivot is below
+    `least_pivot` times the diagonal, it is the minimum-norm solution. It is NaN if the matrix is not finite.
     """
     if not dependent:
         factor, solution, failed = _solve_positive(matrix, right, lower=True)
@@ -108,10 +108,10 @@ def constrained_acceleration(
 
 
 def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST_INVERSE_INERTIA) -> Array:
-    """The inverse inertia (rows,) of each soft row under the constraints of the rigid rows, from J M^-1 J^T.
+    """The inverse inertias (rows,) of soft rows under the constraints of the rigid rows, from J M^-1 J^T.
 
-    It is the diagonal of the Schur complement, but at least `least` times the diagonal of J M^-1 J^T. For rigid rows it
-    is the diagonal of J M^-1 J^T.
+    They are the diagonal of the Schur complement, but at least `least` times the diagonal of J M^-1 J^T. The values of
+    rigid rows are the diagonal of J M^-1 J^T.
     """
     out = np.diag(matrix).copy()
     if not soft.all():
@@ -124,7 +124,7 @@ def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST
 def regularised_bias(
     regularisation: Regularisation, soft: NDArray[np.bool_], bias: Array, slip: Array, gap: Array
 ) -> Array:
-    """The bias (..., rows) with the spring and damper terms of the rows that the mask `soft` (rows,) selects."""
+    """The bias (..., rows) with spring and damper terms for the rows in the mask `soft` (rows,)."""
     ideal = bias if regularisation.complete else np.where(soft, 0.0, bias)
     return ideal - soft * (regularisation.damping * slip + regularisation.stiffness * gap)
 
@@ -132,8 +132,8 @@ def regularised_bias(
 class Dynamics:
     """Accelerations and projections of one mechanism.
 
-    soft (rows,): the mask of the regularised rows, by default all
-    least_inverse_inertia: see `inverse_inertia`, which is the unit of the compliance of a soft row
+    soft (rows,): mask of the regularised rows, by default all rows
+    least_inverse_inertia: see `inverse_inertia`, which gives the unit of a soft row's compliance
     least_pivot: see `solve_rows`
     """
 
@@ -159,10 +159,10 @@ class Dynamics:
         return solve_rows((rows * self.weight) @ rows.T, right, self.has_dependent_rows, self.least_pivot)
 
     def acceleration(self, pose: Array, twist: Array, t: float) -> Array:
-        """Accelerations (bodies, 3) under gravity, forces and the joints' reactions."""
+        """Accelerations (bodies, 3) due to gravity, forces and reactions."""
         if not self.mechanism.row_count:
             return self.mechanism.unconstrained(pose, twist)
-        if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # rolling curves would raise an exception
+        if not (np.isfinite(pose).all() and np.isfinite(twist).all()):  # rolling curves do not accept NaN
             return np.full_like(pose, np.nan)
         return self.acceleration_under(*self.reaction(pose, twist, t), pose, twist)
 
@@ -171,7 +171,7 @@ class Dynamics:
         return (free + self.weight * (rows.T @ reaction)).reshape(-1, 3)
 
     def reaction(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
-        """The rows J (rows, 3 bodies), and their multipliers (rows,): the joints' reactions [N, N m]."""
+        """The rows J (rows, 3 bodies) and the reactions (rows,) [N, N m], which are the rows' multipliers."""
         mechanism, regularisation = self.mechanism, self.regularisation
         rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
         if regularisation is not None:
@@ -187,9 +187,9 @@ class Dynamics:
         return rows, solve_rows(matrix, right, least_pivot=RANK_TOLERANCE)
 
     def project(self, pose: Array, twist: Array, t: float) -> tuple[Array, Array]:
-        """The nearest pose and twist, in the norm of the mass matrix, that satisfy the joints.
+        """The nearest pose and twist that satisfy the joints, in the norm of the mass matrix.
 
-        Newton's method closes the gaps. If it does not converge, `open_from` is set.
+        Newton's method closes the gaps. If the method does not converge, `open_from` is set.
         """
         mechanism = self.mechanism
         if not mechanism.row_count or not np.all(np.isfinite(pose)):
@@ -215,7 +215,7 @@ Step = Callable[[Array, Array, float, float], tuple[Array, Array]]
 
 
 def semi_implicit_euler(dynamics: Dynamics) -> Step:
-    """Steps of the semi-implicit Euler method, which moves the pose by the new velocity."""
+    """Make steps of the semi-implicit Euler method, which moves the pose by the new velocity."""
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
         twist = twist + dt * dynamics.acceleration(pose, twist, t)
@@ -240,7 +240,7 @@ def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
 
 
 def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
-    """Adaptive steps of DOP853 from one sample to the next; the state is NaN if steps become too small or too many."""
+    """Make adaptive steps of DOP853 from sample to sample; the state is NaN if steps become too small or too many."""
     tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # the smallest tolerance of scipy's DOP853
     steps_left = MOST_NUMPY_STEPS
     allowed: Any = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)

@@ -1,4 +1,4 @@
-"""The engine with exact multipliers: its settings and convergence orders."""
+"""The engine with exact multipliers: settings and convergence orders."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Stabilisation = Literal["none", "baumgarte", "projection"]
 Tolerance = Annotated[float, Rule(lambda value: 1e-14 <= value < 1, "from 1e-14 to below 1")]
 
 INTEGRATOR_ORDERS: dict[Integrator, int] = {"euler": 1, "rk4": 4, "dop853": 8}
-# The time constant of Baumgarte's correction, in steps, as in the tuned variant of MuJoCo.
+# Time constant of Baumgarte's correction in steps, as in the tuned variant of MuJoCo.
 BAUMGARTE_STEPS = 5.0
-# Nominal CPU time of a step of three bodies [s], with and without compiled code. The published steps follow from it, so
-# it stays unchanged although the compiled code now takes a third of it.
+# Nominal CPU time [s] of a step of three bodies, with and without compiled code. The published steps depend on it.
+# Therefore it stays unchanged, although the compiled code now takes a third of the time.
 STEP_COSTS: dict[bool, dict[Integrator, float]] = {
     True: {"euler": 4e-6, "rk4": 8e-6, "dop853": 2e-5},
     False: {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3},
@@ -35,9 +35,9 @@ class Lagrange(Engine, Valid):
     """Ideal constraints by exact multipliers. Raises ValueError for settings that don't exist.
 
     integrator: "euler" (semi-implicit, order 1), "rk4" (order 4) or "dop853" (order 8)
-    stabilisation: "none" (gaps grow), "baumgarte" (a spring and a damper that depend on the step) or "projection" (onto
-        the joints after each step)
-    tolerance: None for fixed steps of dt, or for "dop853" the relative and absolute tolerance of adaptive steps; dt is
+    stabilisation: "none" (gaps grow), "baumgarte" (springs and dampers that depend on the step) or "projection" (after
+        each step)
+    tolerance: None for fixed steps of dt, or the relative and absolute tolerance of adaptive steps of "dop853"; dt is
         then the time between samples. To estimate the error of a run, compare it with a run at another tolerance.
     compiled: whether steps are machine code if numba is installed; otherwise they are computed in numpy
     """
@@ -70,9 +70,9 @@ class Lagrange(Engine, Valid):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The integrator's order. With a projection gaps are zero, and a prescribed motion has no error.
+        """The integrator's order. With a projection, gaps are zero and a prescribed motion has no error.
 
-        The stiffness of Baumgarte's spring is proportional to 1/dt^2. Poses therefore lose up to two orders, and
+        The stiffness of Baumgarte's spring is proportional to 1/dt^2. Therefore poses lose up to two orders, and
         reactions may not converge.
         """
         if self.tolerance is not None:
@@ -96,7 +96,7 @@ class Lagrange(Engine, Valid):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """The nominal CPU time of a step [s]. It does not depend on whether numba is installed."""
+        """The nominal CPU time [s] of a step, which does not depend on whether numba is installed."""
         return STEP_COSTS[self.compiled][self.integrator] * over_three(mechanism)
 
     @validated

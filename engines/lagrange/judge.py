@@ -16,11 +16,11 @@ from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]
 
-# The claimed accuracy of poses and velocities, in rad and in units of the mechanism's length and time scale.
+# Claimed accuracy of poses and velocities, in rad or in units of the mechanism's length and time scale.
 JUDGE_CLAIM = 1e-10
-# The ratio of the tolerance of the second run to that of the first.
+# Tolerance of the second run relative to the tolerance of the first run.
 SECOND_RUN_FACTOR = 10.0
-# The ratio of tolerances if a run with larger tolerance replaces one in which rounding disturbs the step control.
+# Factor on the tolerance if rounding disturbs the step control and the run is repeated.
 FALLBACK_FACTOR = 100.0
 
 
@@ -28,12 +28,13 @@ FALLBACK_FACTOR = 100.0
 class Judge(Lagrange):
     """The engine with a tolerance near rounding and an `estimate` of its error.
 
-    The estimate is the difference from a second run with SECOND_RUN_FACTOR times the tolerance. The second run has
-    twice as many samples and one more, so that it takes other steps. The estimate is about SECOND_RUN_FACTOR times the
-    error if the tolerance determines the error, and about the error if rounding determines it. The motion is
-    unresolved, with a warning, from the first sample at which the estimate of poses or velocities exceeds JUDGE_CLAIM.
+    The estimate is the difference from a second run with SECOND_RUN_FACTOR times the tolerance. The second run has 2 n
+    + 1 samples instead of n, so it takes other steps. If the tolerance determines the error, the estimate is about
+    SECOND_RUN_FACTOR times the error. If rounding determines the error, the estimate is about the error. If the
+    estimate of poses or velocities exceeds JUDGE_CLAIM, the motion is unresolved from then on, and the run has a
+    warning.
 
-    If rows are nearly dependent, rounding may exceed the tolerance, so that steps become too small. The run is then
+    If rows are nearly dependent, rounding may exceed the tolerance, and steps become too small. The run is then
     repeated with FALLBACK_FACTOR times the tolerance.
     """
 
@@ -52,7 +53,7 @@ class _JudgeRun(OneShot):
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        """Raises ValueError for counts that are no positive whole numbers, and RuntimeError at the second call."""
         self.begin()
         trajectory, factor = self._first_run(samples, every), SECOND_RUN_FACTOR
         stepping = trajectory.stepping
@@ -66,7 +67,7 @@ class _JudgeRun(OneShot):
         estimate = np.abs(trajectory.pose - second.pose[:-1:2])
         rate_estimate = np.abs(trajectory.twist - second.twist[:-1:2]) * self._mechanism.time_scale
         errors = np.maximum(estimate, rate_estimate) / self._mechanism.pose_unit
-        # Both runs may have the same open joint: its row is lost if masses differ by too large a factor.
+        # Both runs may have the same open joint, since a row is lost if masses are too different.
         errors = np.concatenate([errors.reshape(len(errors), -1), self._violations(trajectory)], axis=1)
         is_unresolved = ~(errors < JUDGE_CLAIM).all(axis=1)  # True for NaN
         unresolved_at, warnings = None, trajectory.warnings
@@ -77,9 +78,10 @@ class _JudgeRun(OneShot):
         return replace(trajectory, stepping=stepping, warnings=warnings, estimate=estimate, unresolved_at=unresolved_at)
 
     def _violations(self, trajectory: Trajectory) -> Array:
-        """Gaps and slips (times, 2 rows) in the mechanism's length and time scale, minus the rounding of positions.
+        """Gaps and slips (times, 2 rows) in units of the mechanism's length and time scale, minus the rounding of
+        positions.
 
-        They are NaN at times at which the state is not finite.
+        They are NaN at times with a state that is not finite.
         """
         mechanism, out = self._mechanism, np.full((len(trajectory.t), 2 * self._mechanism.row_count), np.nan)
         finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))

@@ -1,12 +1,12 @@
-"""Loading of the compiled functions, and the folder in which numba caches their machine code.
+"""Load the compiled functions, and choose the folder in which numba caches machine code.
 
-The argument types are the same for every mechanism, so each function is compiled once. Later processes read its machine
+The argument types are the same for every mechanism, so each function is compiled once. Later processes read the machine
 code from files in a fraction of a second. numba is imported at the first step.
 
-The cache of numba checks only the source file of the called function, not of the functions that it calls. The name of
-the folder therefore contains a digest of all sources. The folder is in NUMBA_CACHE_DIR if that is set. Otherwise it is
-beside the sources, or in the user's cache folder if the installation is read-only. Two processes may compile at the
-same time, since numba replaces whole files.
+numba's cache checks the source file of a called function, but not the sources of the functions that it calls. The name
+of the folder therefore contains a digest of all sources. The folder is in NUMBA_CACHE_DIR if this variable is set.
+Otherwise it is next to the sources, or in the user's cache folder if the installation is read-only. Two processes may
+compile at the same time, since numba replaces whole files.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def installed() -> bool:
 
 
 def is_cold(adaptive: bool) -> bool:
-    """Whether the next run with adaptive or fixed steps has to be compiled first, which may take two minutes."""
+    """Whether the next run with adaptive or fixed steps must first be compiled, which may take two minutes."""
     index = "*adaptive_steps*.nbi" if adaptive else "*fixed_steps*.nbi"
     return installed() and not any(_cache_folder().rglob(index))
 
@@ -65,7 +65,7 @@ class CompiledFunctions(NamedTuple):
 def compiled() -> CompiledFunctions:
     """The compiled functions; raises ImportError without numba."""
     config = import_module("numba").config
-    default, config.CACHE_DIR = config.CACHE_DIR, str(_cache_folder())  # read by numba when functions are defined
+    default, config.CACHE_DIR = config.CACHE_DIR, str(_cache_folder())  # numba reads this when functions are defined
     try:
         steps = import_module("engines.lagrange.compiled.steps")
         adaptive = import_module("engines.lagrange.compiled.adaptive")
@@ -88,7 +88,7 @@ def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
 
 @cache
 def _cache_folder() -> Path:
-    """The existing, writable folder for machine code."""
+    """The folder for machine code, which exists and is writable."""
     configured = os.environ.get("NUMBA_CACHE_DIR")
     for parent in [Path(configured)] if configured else [SOURCE_FOLDER / "__pycache__", cache_folder()]:
         folder = parent / f"lagrange-{_digest()}"

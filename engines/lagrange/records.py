@@ -27,13 +27,13 @@ class ForceKind(IntEnum):
 
 
 class RollingForm(IntEnum):
-    """How the contact of a rolling pair is computed."""
+    """The formula for the contact of a rolling pair."""
 
     ON_LINE, ON_ROUND, TABULATED, NOT_TABULATED = range(4)
 
 
 class RowLaw(IntEnum):
-    """The regularisation of the rows: none, springs and dampers, or springs and dampers with compliance."""
+    """The regularisation of the rows, by springs and dampers with or without compliance."""
 
     IDEAL, SPRINGS, COMPLIANT = range(3)
 
@@ -42,11 +42,11 @@ class RowSelection(IntEnum):
     ALL, HOLONOMIC, RIGID = range(3)
 
 
-# Newton's method stops after a correction of this size in units of the mechanism's length. It converges quadratically,
-# so the next correction would be below rounding.
+# Newton's method stops after a correction of this size, in units of the mechanism's length. The method converges
+# quadratically, so the next correction would be below rounding.
 CLOSED = 1e-9
-# Least ratio of the inverse inertia of a soft row under the constraints of the rigid rows to that of the row alone. It
-# is used if the soft row depends on the rigid rows.
+# Smallest inverse inertia of a soft row under the constraints of the rigid rows, relative to the inverse inertia of the
+# row alone. It is used if the soft row depends on the rigid rows.
 LEAST_INVERSE_INERTIA = 0.1
 CELL_SIZE = 20  # Number of complex numbers in a cell of `engines.rolling_table`.
 MOST_STAGES = 16  # Largest number of stages of a method, including those for dense output.
@@ -57,40 +57,40 @@ def _record(integers: str, reals: str = "", complexes: str = "", unsigned: str =
     return np.dtype([(name, kind) for text, kind in names for name in text.split()])
 
 
-# Points of the first and second body in their own frames [m].
+# Points [m] in the frames of the first and of the second body.
 POINT_FIELDS = "first_x first_y second_x second_y "
-# Units are those of the fields of `reference.joints`, `reference.forces` and `reference.couplings`.
+# Fields have the units of `reference.joints`, `reference.forces` and `reference.couplings`.
 # `dependent`: whether rows are dependent at the start; `regularised`: a RowLaw.
 CONSTANT_RECORD = _record("dependent regularised holonomic_rows", "gravity_x gravity_y")
-# The inverse inertias of a body, and its state at the last call of `set_bodies`.
+# Inverse inertias and state of a body at the last call of `set_bodies`.
 BODY_RECORD = _record("", "inverse_mass inverse_inertia x y angle cos sin vx vy omega")
 JOINT_RECORD = _record("kind first second row roll", POINT_FIELDS + "angle length ratio offset rate")
 FORCE_RECORD = _record("kind first second first_term term_count", POINT_FIELDS + "x y stiffness rest damping load")
 TERM_RECORD = _record("row first second first_end second_end sliding", "factor line_angle offset " + POINT_FIELDS)
 # `column` is the first column of the row's envelope; the entry in a column is matrix[begin + column].
 ROW_RECORD = _record("first second holonomic column begin")
-# The state and the regularisation of a row. The row has no bias if `without_bias` is 1.
+# State and regularisation of a row, which has no bias if `without_bias` is 1.
 EQUATION_RECORD = _record("", "gap bias rate stiffness damping compliance without_bias inverse_inertia")
-# The derivatives of a row with respect to the coordinates of one body.
+# Derivatives of a row by the coordinates of a body.
 END_RECORD = _record("", "x y turn")
-# The third and further ends of a row.
+# An end of a row with more than two bodies.
 FURTHER_END_RECORD = _record("row body end")
-# Two ends on one body, whose product is added to an entry of the matrix.
+# Two ends on one body; their product is added to an entry of the matrix.
 PRODUCT_RECORD = _record("", unsigned="entry end other body")
-# The constants of a closed form of `engines.rolling_table`, or the window of cells of a table.
+# Constants of a closed form in `engines.rolling_table`, or a table's window of cells.
 ROLLING_RECORD = _record(
     "form first second first_cell cell_count cell_begin", "start angle turning width", "origin along radius middle"
 )
-# Results of calls. Times are NaN for events that did not happen.
-# missing_roll: the number of a roll whose table has no cell at the rotation `missing_angle` [rad], or -1
-# selection: the RowSelection of the last factorisation
-# smallest_pivot: the smallest pivot relative to the diagonal since the beginning of a step
-# factor_pivot: the smallest pivot relative to the diagonal in the last factorisation
-# stopped_at [s]: the time at which steps became too small or too many
-# stiff_from [s]: the time from which the motion is stiff
-# open_from [s]: the time of the first projection that did not converge
-# singular_at [s]: the time of the first projection with a pivot below NEARLY_SINGULAR
-# rounding: the change of speeds by rounding, in units of the mechanism's speed
+# Results of calls; the time of an event is NaN if the event did not happen.
+# missing_roll: number of a roll whose table has no cell at the rotation `missing_angle` [rad], or -1.
+# selection: RowSelection of the last factorisation.
+# smallest_pivot: smallest pivot relative to the diagonal since the beginning of a step.
+# factor_pivot: smallest pivot relative to the diagonal in the last factorisation.
+# stopped_at: time [s] at which steps became too small or too many.
+# stiff_from: time [s] from which the motion is stiff.
+# open_from: time [s] of the first projection that did not converge.
+# singular_at: time [s] of the first projection with a pivot below NEARLY_SINGULAR.
+# rounding: change of speeds by rounding, in units of the mechanism's speed.
 STATUS_RECORD = _record(
     "missing_roll accepted_steps selection",
     "missing_angle smallest_pivot factor_pivot stopped_at stiff_from rounding open_from singular_at",

@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 FIXED_STEP_TABLEAUS = {"euler": NO_STAGES, "rk4": RK4, "dop853": FIXED_DOP853}
-# A row is lost if its slip after a projection, or the error of its acceleration without one, exceeds this share of the
-# largest speed or acceleration. The value is the square root of the rounding.
+# A row is lost if its slip exceeds this share of the largest speed after a projection. Without a projection, the error
+# of its acceleration is compared with the largest acceleration. The value is the square root of the rounding.
 LOST_ROW = 1.5e-8
-# Least speed to which a slip is compared, in units of the mechanism's length and time scale.
+# Smallest speed with which a slip is compared, in units of the mechanism's length and time scale.
 SLOW_MOTION = 1e-4
 
 
@@ -63,12 +63,12 @@ class LagrangeRun(OneShot):
 
     @validated
     def __call__(self, samples: Count, every: Count) -> Trajectory:
-        """Raises ValueError for counts that are not whole numbers above zero, RuntimeError at the second call."""
+        """Raises ValueError for counts that are no positive whole numbers, and RuntimeError at the second call."""
         self._mechanism.require_room(samples)
         self.begin()
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
         started = time.process_time()
-        with np.errstate(all="ignore"):  # a diverging run has a warning of its own
+        with np.errstate(all="ignore"):  # a diverging run has another warning
             poses, twists = self._motion(samples, every)
             stepping = time.process_time() - started
             warnings = self._model.warnings(self._engine.tolerance) if self._model is not None else ()
@@ -104,7 +104,7 @@ class LagrangeRun(OneShot):
         return runge_kutta(self.dynamics, FIXED_STEP_TABLEAUS[self._engine.integrator])
 
     def _step_in_numpy(self, poses: Array, twists: Array, begin: int, every: int) -> None:
-        """Fill the samples after `begin`, as far as the motion is finite."""
+        """Fill the samples after `begin` while the motion is finite."""
         step, pose, twist = self._numpy_step(), poses[begin], twists[begin]
         steps, dt = (1, self._dt * every) if self._engine.tolerance is not None else (every, self._dt)
         for sample in range(begin, len(poses) - 1):
@@ -120,7 +120,7 @@ class LagrangeRun(OneShot):
     def _reactions(self, t: Array, poses: Array, twists: Array) -> tuple[Array, Array]:
         """Reactions (samples, rows) and accelerations (samples, bodies, 3); NaN for states that are not finite.
 
-        Reactions of dependent rows are those of minimum norm, as in `Mechanism.reaction`.
+        Reactions of dependent rows are the minimum-norm solution, as in `Mechanism.reaction`.
         """
         mechanism = self._mechanism
         reactions, accelerations = np.full((len(t), mechanism.row_count), np.nan), np.full_like(poses, np.nan)
@@ -150,17 +150,18 @@ class LagrangeRun(OneShot):
         return () if finite[-1] else (stopped_warning(self._engine.tolerance, float(t[int(np.argmin(finite)) - 1])),)
 
     def _lost_rows(self, t: Array, poses: Array, twists: Array, accelerations: Array) -> tuple[RunWarning, ...]:
-        """The warning about joints that slip after a projection, or whose accelerations violate the rows without one.
+        """The warning about joints that slip after a projection, or (without projection) whose accelerations violate
+        rows.
 
-        If the distance of a body from a joint is large compared with its radius of gyration, its mass has a small
-        effect on J M^-1 J^T. If the effect is below rounding, the row seems to depend on others and is ignored.
+        If a body's distance from a joint is large relative to its radius of gyration, its mass has a small effect on J
+        M^-1 J^T. If the effect is below rounding, the factorisation ignores the row as a dependent row.
         """
         mechanism, regularisation = self._mechanism, self._regularisation
         slow_speed = SLOW_MOTION * mechanism.length_scale / mechanism.time_scale
         if self._engine.stabilisation == "projection":
             is_lost = self._exceeds(mechanism.slip(poses, twists), twists, slow_speed)
             return _lost_row_warning("joints slip after the projection", t[1:][is_lost[1:]])
-        # Without projection rolling curves may separate, and their equations are valid only in contact.
+        # Without projection, rolling curves may separate, but the equations are valid only in contact.
         if any(isinstance(joint, Roll) for joint in mechanism.joints):
             t, poses, twists, accelerations = t[:1], poses[:1], twists[:1], accelerations[:1]
         expected = mechanism.bias(poses, twists)
@@ -173,7 +174,7 @@ class LagrangeRun(OneShot):
         return _lost_row_warning("accelerations open joints", t[is_lost])
 
     def _exceeds(self, rows: Array, rates: Array, slow: float) -> NDArray[np.bool_]:
-        """Whether a row exceeds LOST_ROW times (the largest rate + slow) at each time (times,).
+        """Whether a row exceeds LOST_ROW * (largest rate + slow), by time (times,).
 
         Angular values are multiplied by the mechanism's length.
         """

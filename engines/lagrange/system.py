@@ -1,7 +1,7 @@
 """The records of a mechanism for compiled code.
 
-The rows are in reverse Cuthill-McKee order, so that the matrix J M^-1 J^T has a narrow envelope: O(bodies) entries for
-a chain. Each entry is a sum of products of two ends of rows on one body. This module creates the list of products.
+The rows are in reverse Cuthill-McKee order, so the envelope of the matrix J M^-1 J^T is narrow, with O(bodies) entries
+for a chain. Each entry is a sum of products of two ends of rows on one body. This module lists these products.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ from reference.rolling.roll import Roll
 from reference.rows import rank
 
 Integers = NDArray[np.int64]
-Numbers = Mapping[str | None, int]  # Number of each body by name; None is the ground.
-Fields = dict[str, str]  # Attribute of a joint or force for each field of its record.
+Numbers = Mapping[str | None, int]  # Numbers of bodies by name; None is the ground.
+Fields = dict[str, str]  # Attributes of a joint or force by field of its record.
 
 JOINT_FIELDS: dict[type, tuple[JointKind, Fields]] = {
     Pin: (JointKind.PIN, {}),
@@ -70,11 +70,11 @@ FORCE_FIELDS: dict[type, tuple[ForceKind, Fields]] = {
         {"load": "force", "stiffness": "stiffness", "damping": "damping", "rest": "rest"},
     ),
 }
-MOST_RANKED_ROWS = 400  # the computation of the rank of more rows would take longer than a run
+MOST_RANKED_ROWS = 400  # the rank of more rows would take longer than a run
 
 
 def system_of(mechanism: Mechanism) -> tuple[System, Integers]:
-    """The system of a mechanism without cells of tables, and the row of the system for each row of the mechanism."""
+    """The system of a mechanism without cells of tables, and the rows of the system by row of the mechanism."""
     joints, body_count = mechanism.joints, len(mechanism.bodies)
     numbers = {body.name: number for number, body in enumerate(mechanism.bodies)} | {None: body_count}
     first_rows = _first_rows(joints, numbers)
@@ -167,7 +167,7 @@ def _forces(mechanism: Mechanism, numbers: Numbers) -> Records:
 
 
 def _first_rows(joints: Sequence[Joint], numbers: Numbers) -> Integers:
-    """The first row of each joint (joints,); joints on the same body have rows near each other."""
+    """The first row of each joint (joints,); rows of joints on the same body are near each other."""
     if not joints:
         return np.zeros(0, dtype=np.int64)
     ground = numbers[None]
@@ -187,7 +187,10 @@ def _bodies_of(terms: Iterable[Term], numbers: Numbers) -> list[int]:
 
 
 def _rows(joints: Sequence[Joint], numbers: Numbers, positions: Integers) -> Records:
-    """The records of the rows without their envelope. The row of a coupling has the first two of its bodies."""
+    """The records of the rows without the envelope.
+
+    The record of a coupling contains its first two bodies.
+    """
     rows = np.zeros(len(positions), ROW_RECORD)
     owners = [joint for joint in joints for _ in range(joint.size)]
     for position, joint in zip(positions, owners, strict=True):
@@ -199,7 +202,7 @@ def _rows(joints: Sequence[Joint], numbers: Numbers, positions: Integers) -> Rec
 
 
 def _terms(mechanism: Mechanism, numbers: Numbers, first_rows: Integers) -> tuple[Records, Records]:
-    """The terms of couplings and of coupled forces, and the third and further ends of rows."""
+    """The terms of couplings and of coupled forces, and the ends of rows with more than two bodies."""
     terms, further_ends = list[dict[str, Any]](), list[dict[str, Any]]()
     numbered = zip(mechanism.joints, first_rows.tolist(), strict=True)
     couplings = [(joint, row) for joint, row in numbered if isinstance(joint, Coupling)]
@@ -209,7 +212,7 @@ def _terms(mechanism: Mechanism, numbers: Numbers, first_rows: Integers) -> tupl
             ends[body] = 2 * row + k if k < 2 else 2 * mechanism.row_count + len(further_ends)
             if k >= 2:
                 further_ends.append({"row": row, "body": body, "end": ends[body]})
-        # Index -1 is the unused last record, which takes the ends on the ground.
+        # Index -1 is the unused last record, which receives the ends on the ground.
         for k, term in enumerate(coupling.terms):
             first_end, second_end = (ends.get(numbers[name], -1) for name in (term.first, term.second))
             offset = coupling.offset if k == 0 else 0.0
@@ -227,7 +230,7 @@ def _term(term: Term, numbers: Numbers) -> dict[str, Any]:
 
 
 def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Records, int]:
-    """The products of two ends on one body, and the number of entries of the envelope. Sets the rows' envelope."""
+    """Set the envelope; return the products of two ends on one body, and the number of the envelope's entries."""
     on_body: list[list[tuple[int, int]]] = [[] for _ in range(body_count + 1)]  # (row, end)
     for row, (first, second) in enumerate(zip(rows["first"].tolist(), rows["second"].tolist(), strict=True)):
         on_body[first].append((row, 2 * row))
@@ -252,10 +255,10 @@ def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Re
 
 
 def _has_dependent_rows(mechanism: Mechanism) -> bool:
-    """Whether rows are linearly dependent at the start, such as those of two wheels on one axle.
+    """Whether rows are linearly dependent at t = 0, for example the rows of two wheels on one axle.
 
-    False for more than MOST_RANKED_ROWS, unless there are more rows than coordinates. The factorisation then detects
-    dependent rows.
+    The rank of more than MOST_RANKED_ROWS is not computed, since the factorisation also detects dependent rows. The
+    result is then whether there are more rows than coordinates.
     """
     rows = mechanism.row_count
     if rows > 3 * len(mechanism.bodies):
@@ -273,10 +276,10 @@ def _rolls(joints: Sequence[Joint], numbers: Numbers) -> Records:
 
 
 def _rolling_constants(rolling: Rolling) -> dict[str, Any]:
-    """The form of a pair and its constants, by the fields of ROLLING_RECORD."""
+    """The form and constants of a rolling pair, by field of ROLLING_RECORD."""
     try:
         fast = rolled(rolling)
-    except (ValueError, ArithmeticError):  # there is no contact at some rotations near the start
+    except (ValueError, ArithmeticError):  # near the start some rotations have no contact
         return {"form": RollingForm.NOT_TABULATED}
     match fast:
         case RoundOnLine():

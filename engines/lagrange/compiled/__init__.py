@@ -1,15 +1,15 @@
 """The equations of motion and the steps as functions that numba compiles. Only `engines.lagrange.loading` imports them.
 
 The functions change the arrays of a `records.System` and a `records.StepStorage`, and return numbers or booleans. A
-division by zero gives an infinity or NaN, as in numpy. Sums are not reordered, so that results are the same on every
-processor.
+division by zero gives an infinity or NaN, as in numpy. Numba does not reorder sums, so results are equal on all
+processors.
 
 Reference counting is off (`_nrt`), since it would take longer than the computation; no function creates an array. Inner
-functions have no wrappers for Python, which would double the compilation time. The decorators affect the speed of calls
-and of compilation, not the results:
+functions have no wrappers for Python, which would double the compilation time. The decorators affect only the speed of
+calls and of compilation:
 
 - `inner`: compiled as a separate function
-- `inlined`: inlined by LLVM, for short functions, since passing a system takes as long as their computation
+- `inlined`: inlined by LLVM, for short functions, since passing a system as an argument is slow
 - `merged`: inlined by numba before type inference, for functions with one caller, which reduces the compilation time
 - `entry`: called by Python, compiled at the first call, and cached with copies of all functions that it calls
 

@@ -1,7 +1,7 @@
 """DOP853 with adaptive steps, each projected onto the joints.
 
-Step control and the test for stiffness are those of Hairer, Norsett and Wanner's program (part I, section II.6), as in
-scipy. Errors are in units of the mechanism's length and speed.
+Step control and the test for stiffness follow Hairer, Norsett and Wanner's program (part I, section II.6), as in scipy.
+Errors are in units of the mechanism's length and speed.
 """
 
 from __future__ import annotations
@@ -12,32 +12,32 @@ from engines.lagrange.compiled import entry, inlined, merged
 from engines.lagrange.compiled.dense import fill_samples
 from engines.lagrange.compiled.steps import accelerate, add_stages, copy_state, evaluate_stage, project, store_stage
 
-# The next step is this share of the step for which the error estimate equals the tolerance.
+# Safety factor on the step at which the error estimate is equal to the tolerance.
 STEP_SAFETY = 0.9
 # The smallest and the largest ratio of successive steps.
 LEAST_STEP_FACTOR, LARGEST_STEP_FACTOR = 0.2, 10.0
-# Largest number of accepted and rejected steps between two samples, which take a second for a few bodies.
+# Largest number of accepted and rejected steps between two samples, which take a second in total for a few bodies.
 MOST_TRIES = 20_000
-# A run may have MOST_TRIES accepted steps, and this additional number for each completed sample.
+# A run may have MOST_TRIES accepted steps and additional steps for each completed sample.
 FURTHER_STEPS_PER_SAMPLE = 1_000
 # The relative rounding of double precision.
 DOUBLE_EPSILON = 2.2e-16
-# If a stage needs a contact at a rotation [rad] further from that at the start of the step, the step is too long.
+# Largest rotation [rad] between the start of a step and a stage, for a contact. Otherwise the step is too long.
 FARTHEST_STAGE = 1.0
-# The step times the largest eigenvalue at the stability limit, and the number of consecutive steps there that make a
-# motion stiff.
+# STIFF_PRODUCT is the step times the largest eigenvalue at the stability limit. After STIFF_STEPS consecutive steps at
+# the limit, the motion counts as stiff.
 STIFF_PRODUCT, STIFF_STEPS = 6.1, 15
 
 
 @entry
 def adaptive_steps(system, storage, begin, poses, twists, method, iterations, tolerance, spacing):
-    """Fill poses and twists (samples, 3 bodies), `spacing` apart, after `begin`; returns the last completed sample."""
+    """Fill poses and twists (samples, 3 bodies), `spacing` apart, after `begin`; return the last completed sample."""
     status, last = system.status, len(poses) - 1
     copy_state(poses[begin], twists[begin], storage.pose, storage.twist)
     t, sample, tries, stiff, step = spacing * begin, begin, 0, 0, -1.0
     was_rejected = False
     while sample < last:
-        if step < 0:  # the first step, and its first stage
+        if step < 0:  # this also evaluates the first stage
             step = first_step(system, storage, t, tolerance, min(spacing * 10, spacing * last - t))
         shortest = 16 * DOUBLE_EPSILON * max(abs(t), spacing)
         tries += 1
@@ -72,7 +72,7 @@ def adaptive_steps(system, storage, begin, poses, twists, method, iterations, to
         status.accepted_steps += 1
         done = fill_samples(system, storage, method, iterations, t, dt, end, spacing, sample, poses, twists)
         tries, sample = (0 if done > sample else tries), done
-        if sample < last and end >= spacing * (sample + 1):  # a sample in this step is not finite
+        if sample < last and end >= spacing * (sample + 1):  # a state in this step is not finite
             return sample
         t = end
         advance(storage)
@@ -83,8 +83,8 @@ def adaptive_steps(system, storage, begin, poses, twists, method, iterations, to
 def step_length(step, t, spacing, sample, last):
     """The length of a step and the time at its end.
 
-    The target is the next sample if the step is below twice the spacing of samples, and otherwise the last sample. If
-    the step is more than half of the remaining time, but not all of it, it is replaced by two equal steps.
+    The target is the next sample if the step is below twice the spacing of samples; otherwise it is the last sample. If
+    the step is more than half of the remaining time, but not all of it, two equal steps replace it.
     """
     target = spacing * (sample + 1) if step < 2 * spacing else spacing * last
     remaining = target - t
@@ -94,7 +94,7 @@ def step_length(step, t, spacing, sample, last):
 
 @merged
 def evaluate_stages(system, storage, method, t, dt):
-    """Evaluate stages 2 to 12; the first stage is the last of the previous step. Ends at a contact without a cell."""
+    """Evaluate stages 2 to 12, or end at a contact without a cell; stage 1 is the last stage of the previous step."""
     system.status.smallest_pivot = 1.0
     for stage in range(1, 12):
         evaluate_stage(system, storage, method.stages, method.nodes, stage, t, dt)
@@ -112,7 +112,7 @@ def finish_step(system, storage, iterations, end):
 
 @merged
 def advance(storage):
-    """Copy the end of a step, with its last stage, to the start of the next step."""
+    """Copy the final state and the last stage of a step to the start of the next step."""
     copy_state(storage.new_pose, storage.new_twist, storage.pose, storage.twist)
     for k in range(len(storage.pose)):
         storage.velocities[0, k], storage.accelerations[0, k] = storage.velocities[12, k], storage.accelerations[12, k]
@@ -120,7 +120,7 @@ def advance(storage):
 
 @merged
 def step_rounding(storage, smallest_pivot):
-    """The largest change of a speed by rounding in a step, in units of the mechanism's speed."""
+    """The largest rounding error of a speed in a step, in units of the mechanism's speed."""
     moved = 0.0
     for k in range(len(storage.pose)):
         moved = max(moved, abs(storage.new_twist[k] - storage.twist[k]) / storage.twist_unit[k])
@@ -129,7 +129,7 @@ def step_rounding(storage, smallest_pivot):
 
 @merged
 def is_stiff(storage, dt):
-    """Whether the step is at the stability limit, with the largest eigenvalue estimated from the last two stages."""
+    """Whether the step is at the stability limit; the last two stages give an estimate of the largest eigenvalue."""
     velocities, accelerations = storage.velocities, storage.accelerations
     rates = states = 0.0
     for k in range(len(storage.pose)):
@@ -143,7 +143,7 @@ def is_stiff(storage, dt):
 
 @inlined
 def is_astray(system, pose):
-    """Whether a stage needed a contact more than FARTHEST_STAGE from that at `pose`; if so, the status is reset."""
+    """Whether a stage needed a contact that is too far from `pose`; if so, the status is reset."""
     status = system.status
     if status.missing_roll < 0:
         return False
@@ -162,7 +162,7 @@ def square(value):
 
 @inlined
 def error_norm(storage, pose, twist, tolerance):
-    """The root mean square of a pose and a twist in units of the tolerated error at the current state."""
+    """The root mean square of a pose and a twist, relative to the tolerated error at the current state."""
     total, moving = 0.0, len(storage.pose) - 3
     for k in range(moving):
         pose_error = pose[k] / (tolerance * (storage.pose_unit[k] + abs(storage.pose[k])))
@@ -173,7 +173,7 @@ def error_norm(storage, pose, twist, tolerance):
 
 @merged
 def first_step(system, storage, t, tolerance, longest):
-    """The first step by Hairer, Norsett and Wanner's rule. Evaluates the first stage."""
+    """Evaluate the first stage, and return the first step by Hairer, Norsett and Wanner's rule."""
     pose, twist, acceleration = storage.pose, storage.twist, storage.acceleration
     new_pose, new_twist = storage.new_pose, storage.new_twist
     accelerate(system, pose, twist, t, acceleration)
@@ -197,7 +197,7 @@ def first_step(system, storage, t, tolerance, longest):
 
 @merged
 def error_rate(storage, method, tolerance):
-    """The error estimate of a step, divided by its length, in units of the tolerated error."""
+    """The error estimate of a step divided by the step, relative to the tolerated error."""
     threes = fives = 0.0
     moving = len(storage.pose) - 3
     for k in range(moving):
@@ -216,7 +216,7 @@ def error_rate(storage, method, tolerance):
 
 @inlined
 def stage_errors(rates, method, k):
-    """The error estimates of order 3 and 5 of one coordinate, divided by the length of the step."""
+    """The error estimates of order 3 and 5 of a coordinate, divided by the step."""
     third = fifth = 0.0
     for stage in range(12):
         third += method.third[stage] * rates[stage, k]

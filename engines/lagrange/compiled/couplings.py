@@ -1,6 +1,6 @@
 """The rows of couplings, and the terms of coupled forces, as in `reference.couplings`.
 
-A term is the angle of a body relative to another, or the position of a body's point along a line of another body.
+A term is the angle of a body relative to another body, or the position of a body's point along another body's line.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def add_to_end(end, x, y, turn):
 
 @inlined
 def sliding_bias(term, first, second, x, y):
-    """The bias of a term along the line (x, y), which turns with the first body."""
+    """The bias of a term along the line (x, y), which is fixed in the first body."""
     omega, spin = first.omega, second.omega
     bx = second.cos * term.second_x - second.sin * term.second_y
     by = second.sin * term.second_x + second.cos * term.second_y
@@ -56,7 +56,7 @@ def sliding_bias(term, first, second, x, y):
 def term_value(term, first, second):
     """The value of a term, and its derivatives by the second body's x and y, the first angle and the second angle.
 
-    The derivatives by the first body's x and y are the negative of those by the second body's.
+    The derivatives by the first body's x and y have the opposite sign.
     """
     factor = term.factor
     if term.sliding == 0:

@@ -1,4 +1,4 @@
-"""Dense output of DOP853: the samples between the ends of a step."""
+"""Dense output of DOP853, for samples within a step."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from engines.lagrange.compiled.steps import evaluate_stage, project
 
 @merged
 def fill_samples(system, storage, method, iterations, t, dt, end, spacing, sample, poses, twists):
-    """Fill the samples after `sample` up to the end of a step from t; returns the last one completed."""
+    """Fill the samples after `sample` within a step that begins at t; return the last completed sample."""
     has_stages, pose, twist = False, storage.stage_pose, storage.stage_twist
     while sample < len(poses) - 1 and end >= spacing * (sample + 1):
         instant = spacing * (sample + 1)
@@ -39,7 +39,7 @@ def fill_samples(system, storage, method, iterations, t, dt, end, spacing, sampl
 
 @inlined
 def interpolate(old, new, rates, dense, dt, share, out):
-    """Set `out` to the state at a share of the step from `old` to `new`, by the rates (16, coordinates) of the stages.
+    """Set `out` to the state at a share of the step from `old` to `new`, from the stages' rates (16, coordinates).
 
     The factors `share` and `remaining` alternate, as in scipy's Dop853DenseOutput.
     """

@@ -61,7 +61,7 @@ def point_force(bodies, force, first, second, out):
 
 @inner
 def coupled_force(system, force, out):
-    """Add a force along the gradient of a sum of terms, whose size depends on the sum and its rate."""
+    """Add a force along the gradient of a sum of terms; its size depends on the sum and the rate of the sum."""
     bodies, last = system.bodies, force.first_term + force.term_count
     strength = force.load + force.stiffness * force.rest
     for index in range(force.first_term, last):
@@ -80,7 +80,7 @@ def coupled_force(system, force, out):
 
 @inlined
 def push(bodies, index, x, y, torque, out):
-    """Add the acceleration of a body by a force and a torque at its centre of mass; zero for the ground."""
+    """Add the acceleration of a body due to a force and a torque at its centre of mass; zero for the ground."""
     body, at = bodies[index], 3 * index
     out[at] += body.inverse_mass * x
     out[at + 1] += body.inverse_mass * y

@@ -1,7 +1,7 @@
 """Gap, velocity row J and bias -(dJ/dt) v of each joint, as in `reference.joints`.
 
-The second derivative of a gap is J a less the bias. (ax, ay) and (bx, by) are the arms from the bodies' centres to the
-joint's points; (apart_x, apart_y) leads from the first body's centre to the point on the second body.
+The second derivative of a gap is J a - bias. The arms (ax, ay) and (bx, by) lead from the bodies' centres to the
+joint's points. (apart_x, apart_y) leads from the first body's centre to the second body's point.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def set_bodies(bodies, pose, twist):
 
 @inlined
 def set_equations(system, t):
-    """Set the ends, gap and bias of each row; the gap of a nonholonomic row is 0."""
+    """Set the ends, gaps and biases of all rows; the gap of a nonholonomic row is 0."""
     bodies, equations, ends = system.bodies, system.equations, system.ends
     for index in range(len(system.joints)):
         joint = system.joints[index]
@@ -85,7 +85,7 @@ def pin_equations(first, second, ax, ay, bx, by, equations, ends, row):
 
 @inlined
 def rod_equation(joint, first, second, ax, ay, bx, by, equation, at_first, at_second):
-    """The distance between the two points is `length`; (x, y) is the direction from the first to the second."""
+    """The distance between the two points is `length`; (x, y) is the direction from the first to the second point."""
     omega, spin = first.omega, second.omega
     x, y = second.x + bx - first.x - ax, second.y + by - first.y - ay
     distance = math.sqrt(x * x + y * y)
@@ -102,9 +102,9 @@ def rod_equation(joint, first, second, ax, ay, bx, by, equation, at_first, at_se
 
 @inlined
 def line_equation(joint, first, second, ax, ay, bx, by, equation, at_first, at_second):
-    """The second point stays on a line of the first body (slot), or moves along a line of its own body (skate).
+    """A slot keeps the second point on a line of the first body; a skate moves it along a line of the second body.
 
-    (x, y) is the line's direction, (-y, x) its normal.
+    (x, y) is the line's direction, and (-y, x) is its normal.
     """
     omega, spin = first.omega, second.omega
     apart_x, apart_y = second.x + bx - first.x, second.y + by - first.y

@@ -1,7 +1,7 @@
 """The two rows of a Roll. Vectors are complex numbers, as in `engines.rolling_table`.
 
-P(theta) is the position of the second body in the frame R of the first, at the rotation theta of the second relative
-to the first. The joint is closed if r2 - r1 = R P.
+P(theta) is the position of the second body in the frame R of the first body, and theta is the relative rotation. The
+joint is closed if r2 - r1 = R P.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def roll_equations(system, roll, number, first, second, row):
 
 @merged
 def contact(system, roll, number, theta):
-    """P, P', P'', the tangent e_t and its turning rate per radian, in the first body's frame; NaN without a cell."""
+    """P, P', P'', the tangent e_t and its rotation per radian, in the first body's frame; NaN without a cell."""
     turn = complex(math.cos(theta), math.sin(theta))
     if roll.form == RollingForm.ON_LINE:
         out = turn * roll.middle
@@ -61,9 +61,9 @@ def contact(system, roll, number, theta):
 
 @inner
 def tabulated_contact(cells, cell, theta):
-    """`contact` by the polynomials of a cell: its middle, P and P' there, the coefficients of P'', of P' and of P.
+    """The result of `contact` from the polynomials of a cell (see `engines.rolling_table.Table`).
 
-    P'' = s' e_n - a, and the arm a is -i P'.
+    P'' = s' e_n - a, and the arm is a = -i P'.
     """
     u = theta - cells[cell, 0].real
     position = once = twice = thrice = 0j

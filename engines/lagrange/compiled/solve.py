@@ -1,9 +1,9 @@
-"""The row system J M^-1 J^T reaction = right, the Schur complement of the KKT system: O(bodies) for a chain.
+"""Solve the row system J M^-1 J^T reaction = right (Schur complement of the KKT system), O(bodies) for a chain.
 
-The factor L D L^T needs no scaling: scaled rows give the same digits. A pivot is compared with its row's diagonal. If
-it is below the limit, the row follows from earlier rows; its reaction is set to zero, which does not change the motion.
-The condition number of the product is the square of that of J. Where a pivot is small, the residual of the right side,
-computed with J itself, is therefore solved for again (corrected seminormal equations, Bjorck 1987).
+The factor L D L^T needs no scaling, since scaled rows give the same digits. If a pivot relative to the diagonal is
+below the limit, the row depends on earlier rows. Its reaction is set to zero, which does not change the motion. The
+condition number of J M^-1 J^T is the square of that of J M^-1/2. If a pivot is small, the residual is therefore
+computed with J, and the system is solved for a correction (corrected seminormal equations, Bjorck 1987).
 """
 
 from __future__ import annotations
@@ -13,23 +13,23 @@ import math
 from engines.lagrange.compiled import inlined, inner, merged, unsigned
 from engines.lagrange.records import LEAST_INVERSE_INERTIA, RowLaw, RowSelection
 
-# The largest pivot, relative to the diagonal, of a dependent row, if all rows are independent at the start: a thousand
+# Largest pivot of a dependent row, relative to the diagonal, if all rows are independent at t = 0. It is a thousand
 # times the rounding of the product.
 INDEPENDENT_PIVOT = 1e-13
-# The limit if rows are dependent at the start, as RANK_TOLERANCE of `reference.rows`. The stages of a step have gaps,
-# whose squares perturb the pivots.
+# Largest pivot of a dependent row if rows are dependent at t = 0, as RANK_TOLERANCE of `reference.rows`. The stages of
+# a step have gaps, whose squares perturb the pivots.
 DEPENDENT_PIVOT = 1e-9
-# If the smallest pivot is above this value, rounding costs less than two digits, and no correction is needed.
+# Smallest pivot that needs no correction, since rounding then costs less than two digits.
 WELL_CONDITIONED = 1e-2
-# Systems with more rows are always corrected once, since the pivots of a long chain do not show its condition.
+# Systems with more rows are always corrected once, since the pivots of a long chain do not show the condition number.
 FEW_ROWS = 24
-# Each correction has to halve the residual. Four corrections are enough to reach rounding.
+# Largest number of corrections. Each must halve the residual, and four are enough to reach rounding.
 MOST_CORRECTIONS = 4
 
 
 @inlined
 def is_left_out(system, row):
-    """Whether a row is not selected; its diagonal is then 1, without coupling to other rows."""
+    """Whether a row is not selected; the row then has the diagonal 1 and no coupling to other rows."""
     selection = system.status.selection
     if selection == RowSelection.HOLONOMIC:
         return system.rows[row].holonomic == 0
@@ -55,7 +55,7 @@ def assemble(system):
 
 @inlined
 def factorise(system):
-    """Replace the matrix by its factor; returns the smallest pivot of independent rows, relative to the diagonal."""
+    """Replace the matrix by its factor; return the smallest pivot of independent rows relative to the diagonal."""
     matrix, inverse_pivots, rows = system.matrix, system.inverse_pivots, system.rows
     limit = DEPENDENT_PIVOT if system.constants.dependent != 0 else INDEPENDENT_PIVOT
     smallest = 1.0
@@ -97,7 +97,7 @@ def leave_out(system, row, first, begin):
 def substitute(system, vector):
     """Replace the vector (rows,) by the solution of L D L^T x = vector.
 
-    The result of a row is handed to the next in a variable: through memory this would take twice as long.
+    A variable passes the result of a row to the next row, since memory access would take twice as long.
     """
     rows, matrix, inverse_pivots = system.rows, system.matrix, system.inverse_pivots
     neighbour = 0.0
@@ -182,7 +182,7 @@ def factorise_rows(system):
 def solve(system, corrections):
     """Set `change` to the least solution of J change = right in the norm of the masses, and set the reactions.
 
-    corrections: how many are made where all pivots are large; otherwise there are up to MOST_CORRECTIONS.
+    corrections: number of corrections if all pivots are large; otherwise there are up to MOST_CORRECTIONS.
     """
     rows, status = len(system.rows), system.status
     reaction, residual, right = system.reaction, system.residual, system.right
@@ -193,7 +193,7 @@ def solve(system, corrections):
     substitute(system, reaction)
     apply_reactions(system)
     if system.constants.regularised == RowLaw.COMPLIANT and not is_part:
-        return  # J change differs from the right side by the compliance
+        return  # J change need not be equal to the right side
     last_largest = math.inf
     for _ in range(corrections if pivot > WELL_CONDITIONED else MOST_CORRECTIONS):
         largest = 0.0
@@ -214,10 +214,10 @@ def solve(system, corrections):
 
 @inner
 def assemble_compliant(system):
-    """Set the matrix to J M^-1 J^T with compliances on its diagonal, in units of each row's inverse inertia.
+    """Set the matrix to J M^-1 J^T plus compliances, in units of the rows' inverse inertias, on the diagonal.
 
-    This is the inverse inertia while the rigid rows hold, the diagonal of the Schur complement, but at least
-    LEAST_INVERSE_INERTIA times that of the row alone.
+    The unit is the inverse inertia under the constraints of the rigid rows (the diagonal of the Schur complement). It
+    is at least LEAST_INVERSE_INERTIA times the inverse inertia of the row alone.
     """
     reaction, residual, equations = system.reaction, system.residual, system.equations
     rows = len(system.rows)

@@ -12,9 +12,9 @@ from engines.lagrange.compiled.joints import set_bodies, set_equations
 from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
 from engines.lagrange.records import CLOSED, RowLaw, RowSelection
 
-# A projection onto rows with a smaller pivot turns the rounding of gaps, 1e-16, into velocities of 1e-16 / pivot.
+# A projection is nearly singular below this pivot. Rounding of gaps, 1e-16, then becomes velocities of 1e-16 / pivot.
 NEARLY_SINGULAR = 1e-8
-# A constant, since numba would compile `solve` a second time for the literal 0.
+# A named constant, since numba would compile `solve` a second time for the literal 0.
 NO_CORRECTIONS = np.int64(0)
 
 
@@ -32,13 +32,13 @@ def accelerate(system, pose, twist, t, out):
         solve(system, 1 if len(system.rows) > FEW_ROWS else 0)
         for k in range(ground):
             out[k] += system.change[k]
-    for k in range(ground, ground + 3):  # they may be NaN in a diverged stage
+    for k in range(ground, ground + 3):  # values may be NaN in a diverged stage
         out[k] = 0.0
 
 
 @merged
 def set_right_side(system, twist, applied):
-    """Set the right side: bias - J applied, and for soft rows minus the terms of spring and damper."""
+    """Set the right side to bias - J applied, minus spring and damper terms for soft rows."""
     rows = len(system.rows)
     for row in range(rows):
         system.right[row] = system.equations[row].bias - row_times(system, row, applied)
@@ -53,7 +53,7 @@ def set_right_side(system, twist, applied):
 
 @inner
 def project(system, pose, twist, t, iterations, pose_unit):
-    """Move a pose and a twist to the nearest ones, in the norm of the masses, that satisfy the joints."""
+    """Move a pose and a twist to the nearest values that satisfy the joints, in the norm of the masses."""
     rows, moving = len(system.rows), len(pose) - 3
     if rows == 0:
         return
@@ -75,10 +75,10 @@ def project(system, pose, twist, t, iterations, pose_unit):
 
 @merged
 def project_pose(system, pose, twist, t, iterations, pose_unit):
-    """Close the gaps by Newton's method; returns whether the last factorisation is accurate enough for the twist.
+    """Close the gaps by Newton's method; return whether the last factorisation is accurate enough for the twist.
 
-    `open_from` of the status is the first time at which the iterations did not close the joints: the step ended too far
-    from any pose of the joints, or at a singular one.
+    `open_from` of the status is the first time at which the iterations did not close the joints. The step then ended
+    too far from an admissible pose, or at a singular pose.
     """
     rows, moving = len(system.rows), len(pose) - 3
     has_holonomic_rows_only = system.constants.holonomic_rows == rows
@@ -131,7 +131,7 @@ def store_stage(storage, stage, velocity):
 
 @inlined
 def add_stages(storage, weights, dt, pose, twist):
-    """Add the weighted sums of the stages to a state; each sum is computed first, so that the state is rounded once."""
+    """Add weighted sums of the stages to a state; each sum is computed first, so that the state is rounded once."""
     for k in range(len(pose)):
         moved = gained = 0.0
         for stage in range(len(weights)):
@@ -143,11 +143,11 @@ def add_stages(storage, weights, dt, pose, twist):
 
 @entry
 def fixed_steps(system, storage, begin, poses, twists, tableau, iterations, dt, every):
-    """Steps of `dt` from the sample `begin` on, `every` for a sample, into poses and twists (samples, 3 bodies).
+    """Make `every` steps of `dt` per sample after `begin`, and fill poses and twists (samples, 3 bodies).
 
-    Without stages it is the semi-implicit Euler method. iterations: of Newton's method after a step, 0 for no
-    projection. Returns the last completed sample: the last one, that before a pose that is not finite, or that before a
-    contact without a cell in its table (`missing_roll`).
+    Without stages the method is semi-implicit Euler. A run stops early before a pose that is not finite, or before a
+    contact without a cell in its table (`missing_roll`). Returns the last completed sample.
+    iterations: number of Newton iterations after a step; 0 for no projection
     """
     pose, twist = storage.pose, storage.twist
     copy_state(poses[begin], twists[begin], pose, twist)
@@ -176,7 +176,7 @@ def fixed_steps(system, storage, begin, poses, twists, tableau, iterations, dt, 
 
 @entry
 def evaluate_samples(system, storage, begin, poses, twists, dt, reactions, accelerations):
-    """Set the reactions and accelerations at samples `dt` apart; returns the last completed sample."""
+    """Set the reactions and accelerations at samples `dt` apart; return the last completed sample."""
     for sample in range(begin, len(poses)):
         copy_state(poses[sample], twists[sample], storage.pose, storage.twist)
         accelerate(system, storage.pose, storage.twist, sample * dt, storage.acceleration)
