@@ -143,9 +143,7 @@ def test_constrained_acceleration_satisfies_newtons_law_and_the_rows():
 def test_baumgarte_closes_an_open_joint_critically_damped():
     # The bar is displaced from its pin along its axis. The gap satisfies gap'' = -2 gap'/T - gap/T^2.
     mechanism, constant = replace(pendulum(angle=0.0), gravity=(0.0, 0.0)), 0.1
-    regularisation = Lagrange("rk4", "baumgarte").regularisation(
-        mechanism, constant / 5
-    )  # The time constant is five steps.
+    regularisation = Lagrange("rk4", "baumgarte").regularisation(mechanism, constant / 5)  # time constant of five steps
     step = runge_kutta(Dynamics(mechanism, regularisation), RK4)
     pose, twist, dt = mechanism.pose + np.array([0.02, 0.0, 0.0]), mechanism.twist, constant / 50
     for i in range(150):

@@ -1,6 +1,6 @@
-"""MuJoCo Warp: the same motions as MuJoCo to single precision, and what its adapter says about the engine.
+"""Tests that MuJoCo Warp moves like MuJoCo to single precision, and tests of statements in its adapter.
 
-Warp compiles its kernels for minutes on a new computer, so the tests that run it are slow ones.
+On a new computer Warp compiles its kernels for minutes, so the tests that run it are marked as slow.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def test_a_device_that_is_not_here_is_refused(monkeypatch):
 @pytest.mark.parametrize("engine", mujoco_warp.VARIANTS, ids=lambda engine: engine.variant)
 @pytest.mark.parametrize("name", [name for name in MECHANISMS if name != "weld that closes a loop"])
 def test_it_moves_as_mujoco_with_the_same_settings(engine, name):
-    """The error of single precision is at most 2e-6 in these motions, of rods and gears 1e-6, of loops 2e-6."""
+    """The error of single precision in these motions is at most 2e-6."""
     spacing = span(name) / SAMPLES / 40
     found, expected = (method.build(MECHANISMS[name], spacing)(SAMPLES, 40) for method in (engine, engine.settings))
     bound = 1e-4 if any("velocity term" in warning for warning in found.warnings) else 5e-6

@@ -1,6 +1,6 @@
-"""Newton: motions of Kamino against the judge, refusals, and what its adapter says about the engine.
+"""Tests of Newton's solver Kamino against the judge, of refusals, and of statements in the adapter.
 
-Warp compiles its kernels for minutes on a new computer, so the tests that run it are slow ones.
+On a new computer Warp compiles its kernels for minutes, so the tests that run it are marked as slow.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def test_joints_that_are_not_built_are_refused_by_name():
 @pytest.mark.usefixtures("with_newton")
 @pytest.mark.parametrize("name", BUILT)
 def test_kamino_moves_with_the_error_of_semi_implicit_euler(name):
-    """The largest error at these steps is 9e-3, of a chain of ten, and 3 % of the motion."""
+    """The largest error is 3 % of the motion. A chain of ten links has the largest error, 9e-3."""
     run = newton.TUNED.build(MECHANISMS[name], span(name) / SAMPLES / 80)(SAMPLES, 80)
     moved = np.abs(exact(name) - exact(name)[0]).max()
     assert np.abs(run.pose - exact(name)).max() < 1e-6 + 0.03 * moved

@@ -1,4 +1,4 @@
-"""Engines that are extras: properties of single engines, their files and output, and messages for missing packages.
+"""Tests of extra engines: properties of single engines, files, output, and messages about missing packages.
 
 `test_promised` tests orders, elements and configurations of all engines. `test_claims` tests random mechanisms.
 """
@@ -57,14 +57,14 @@ def test_a_run_prints_nothing_and_leaves_no_file(name, capfd, tmp_path, monkeypa
 
 
 def test_the_start_of_box2d_is_the_mechanisms_to_single_precision():
-    # The engine's function for the angle of a body has an error of up to 3e-5 rad.
+    # The engine's function for the angle of a body would have an error of up to 3e-5 rad.
     described = scene("free_four_bar").mechanism()
     run = shipped("box2d").build(described, 1e-6)(2, 1)
     assert np.abs(run.pose[1] - described.pose).max() < 1e-5
 
 
 def test_a_rod_shorter_than_box2ds_slop_is_refused():
-    # The random search found that a mechanism diverged in millimetres.
+    # The random search found a mechanism that diverged in units of millimetres.
     engine = shipped("box2d")
     import pyb2d3
 
@@ -79,7 +79,7 @@ def test_a_rod_shorter_than_box2ds_slop_is_refused():
 
 @pytest.mark.parametrize(("speed", "rate", "told"), [(1e7, 78.0, False), (0.0, 79.0, True)])
 def test_box2d_reduces_only_rates_above_an_eighth_of_a_turn_in_a_step(speed, rate, told):
-    # An eighth of a turn in a step is 78.5 rad/s. The random search found that our limit reduced speeds above 1e6 m/s.
+    # An eighth of a turn in a step is a rate of 78.5 rad/s. An earlier limit reduced speeds above 1e6 m/s.
     body = Body("free", 1.0, 1.0, (0.0, 0.0, 0.0), (speed, 0.0, rate))
     run = shipped("box2d").build(Mechanism((body,), ()), 1e-2)(3, 1)
     assert run.twist[-1, 0, 0] == pytest.approx(speed, rel=1e-6)
@@ -114,7 +114,7 @@ def test_accelerations_of_a_run_that_ends_early_have_the_shape_of_its_samples():
 
 
 def test_exudyns_reactions_need_consistent_accelerations_at_the_start():
-    # As shipped the trapezoidal rule never reduces the error of the acceleration at the start; see engines/exudyn.
+    # With default settings the trapezoidal rule never reduces the initial error of the acceleration.
     from engines.exudyn import TUNED
 
     shipped("exudyn")
@@ -130,7 +130,7 @@ def test_exudyns_reactions_need_consistent_accelerations_at_the_start():
 
 
 def test_exudyns_motion_does_not_depend_on_units():
-    # Exudyn takes no step below 1e-8 s and rounds sample times to 1e-10 s, which changed the pose as shipped.
+    # By default Exudyn takes no step below 1e-8 s and rounds sample times to 1e-10 s. This changed the poses.
     from engines.exudyn import TUNED
 
     shipped("exudyn")
@@ -144,7 +144,7 @@ def test_exudyns_motion_does_not_depend_on_units():
 
 
 def test_exudyns_error_does_not_depend_on_the_mass_ratio():
-    # A body of 2e-11 kg m^2 on one of 0.8 kg m^2 had an error of 6e-7, since its forces were below the tolerance.
+    # A body of 2e-11 kg m^2 on a body of 0.8 kg m^2 had an error of 6e-7, since its forces were below the tolerance.
     from engines.exudyn import EXTENDED
 
     shipped("exudyn")
@@ -156,7 +156,7 @@ def test_exudyns_error_does_not_depend_on_the_mass_ratio():
 
 
 def test_the_torque_of_a_motor_of_bullet_is_not_limited():
-    # With a limit of 1e10 N m a rate of 25 rad/s had an error of a third for masses of a million tonnes.
+    # With a torque limit of 1e10 N m, the rate of a body of a million tonnes had an error of a third.
     from engines.bullet import DEFAULT
 
     shipped("bullet")
@@ -169,7 +169,7 @@ def test_the_torque_of_a_motor_of_bullet_is_not_limited():
 
 
 def test_a_disc_rolls_on_a_moving_body_in_exudyn():
-    # The random search found that the engine refuses a plane whose origin is not at the body's centre of mass.
+    # The random search found that the engine refuses a plane if its origin is not the body's centre of mass.
     engine = next(engine for engine in QUICKLY if (engine.name, engine.variant) == ("exudyn", "tuned"))
     linkage = mechanism(5, 3, ("pin", "roll"))
     assert any(isinstance(joint, Roll) and joint.first and any(joint.first_point) for joint in linkage.joints)
@@ -198,9 +198,9 @@ def test_the_message_for_a_missing_package_names_the_extra(monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the library is one of Linux")
 def test_the_message_for_a_missing_shared_library_names_it(monkeypatch):
-    # On a small Debian system Exudyn can be installed, but not imported.
+    # On a small Debian system Exudyn can be installed but not imported.
     monkeypatch.setattr(single_run, "_is_loaded", lambda library: False)
-    engine = shipped("box2d")  # which needs none
+    engine = shipped("box2d")  # needs no library
     assert not engine.missing
     monkeypatch.setattr(single_run, "_is_found", lambda module: True)
     lacking = next(engine_ for engine_ in registry.OTHERS if engine_.name == "exudyn")
@@ -229,7 +229,7 @@ def test_samples_after_exudyn_has_stopped_are_nan():
     is_finite = np.all(np.isfinite(run.pose), axis=(1, 2))
     count = int(is_finite.sum())
     assert is_finite[:count].all()
-    # The last sample that the engine wrote is not used either.
+    # The last sample that the engine has written is not used either.
     assert 20 < count < np.ceil(overdriven.stopping_time / 1e-2)
     assert np.abs(linkage.gap(run.pose[:count], run.t[:count])).max() < 1e-6
 
@@ -268,7 +268,7 @@ def with_mjx() -> None:
 
 @pytest.fixture(autouse=True)
 def _programs_forgotten():
-    """Clear the compiled programs after each test, since JAX crashes after some hundreds of them."""
+    """Clear the compiled programs after each test. JAX crashes after some hundreds of programs."""
     yield
     if "jax" in sys.modules:
         sys.modules["jax"].clear_caches()
@@ -301,7 +301,7 @@ def test_a_missing_device_is_refused_in_one_line():
 
 
 def geared(arm: float, light: float, wheel: float, gravity: tuple[float, float]) -> Mechanism:
-    """A pendulum of 2 g and `light` kg m^2 with a gear to a wheel on a free body of 20 t, from the random search."""
+    """A pendulum of 2 g with a gear to a free body of 20 t. `light` and `wheel` are their inertias [kg m^2]."""
     bodies = Body("pendulum", 2e-3, light, (0.0, 0.0, 0.0)), Body("free", 2e4, wheel, (0.0, 0.0, 0.0))
     pin = Pin("pin", None, "pendulum", (arm, -arm), (arm, -arm))
     return Mechanism(bodies, (pin, Gear("gear", "pendulum", "free", 2.0, 0.0)), gravity=gravity)
@@ -310,7 +310,7 @@ def geared(arm: float, light: float, wheel: float, gravity: tuple[float, float])
 @pytest.mark.slow
 @pytest.mark.usefixtures("with_mjx")
 def test_a_residual_of_the_solver_is_a_warning():
-    # As shipped the tolerance is relative to all inertias: a wheel of 1e-6 kg m^2 beside 500 kg m^2 has no effect.
+    # The default tolerance is relative to the sum of inertias. So 1e-6 kg m^2 beside 500 kg m^2 has no effect.
     run = MJX.build(geared(500.0, 500.0, 1e-6, (-1e-3, 9e-4)), 12.0)(4, 10)
     assert [warning.startswith("ours: the solver missed the accelerations") for warning in run.warnings] == [True]
     mended = replace(MJX, settings=replace(MJX.settings, tolerance=1e-28))
@@ -320,7 +320,7 @@ def test_a_residual_of_the_solver_is_a_warning():
 @pytest.mark.slow
 @pytest.mark.usefixtures("with_mjx")
 def test_forces_of_loops_follow_from_the_compliance_without_the_velocity_term():
-    # The law is (A + R) f = b with R of the compiled model (`efc_R`), and with the term J-dot v in b or without it.
+    # The law is (A + R) f = b. R is `efc_R` of the compiled model, and b may contain the velocity term J-dot v.
     scene = BY_NAME["free_four_bar"]
     truth = scene.motion(np.linspace(0.2, 1.0, 4) * scene.duration)
     for pose, twist in zip(truth.pose, truth.twist, strict=True):
@@ -328,13 +328,13 @@ def test_forces_of_loops_follow_from_the_compliance_without_the_velocity_term():
         soft = present(MJX_TUNED.regularisation(now, 1e-3))
         model = MJX_TUNED.settings.model(now, 1e-3)
         declared = np.zeros(now.row_count)
-        # A connect constraint has a third row, out of the plane. The model has a unit of mass.
+        # The third row of a connect constraint is normal to the plane. Masses in the model have a unit.
         declared[np.flatnonzero(soft.rows)] = model.start().efc_R[:2] / model.unit
         run = MJX_TUNED.build(now, 1e-3)(1, 1).reaction[0]
         largest = np.abs(run).max()
         assert np.abs(run - reactions_with(now, soft.rows, False, declared)).max() < 1e-9 * largest
         assert np.abs(run - reactions_with(now, soft.rows, True, declared)).max() > 1e-3 * largest
-        # Without R the relative error of the law is at most |R| / (the least eigenvalue of A).
+        # Without R the relative error of the law is at most |R| divided by the smallest eigenvalue of A.
         weight = 1 / now.inertias.reshape(-1)
         rows = now.rows(now.pose)
         effective_mass = np.linalg.inv((rows * weight) @ rows.T)[np.ix_(soft.rows, soft.rows)]
@@ -343,7 +343,7 @@ def test_forces_of_loops_follow_from_the_compliance_without_the_velocity_term():
         assert np.abs(run - reactions_with(now, soft.rows, False)).max() < bound * largest
 
 
-# One element for each construction in the model (tendons, actuators, equalities), and a tree.
+# One element for each construction in the model, such as tendons, actuators and equalities, and a tree.
 COMPILED = ("spring", "torsion spring", "force", "gear", "rod", "weld", "pendulum_2")
 
 

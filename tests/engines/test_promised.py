@@ -1,6 +1,6 @@
-"""Comparison of every engine with the judge: each element and configuration has the declared order or is refused.
+"""Comparison of every engine with the judge. An element or configuration has the declared order, or is refused.
 
-Tests of an engine that is not installed are skipped with the name of its extra. MJX is in test_other_engines.py.
+Tests of an engine that is not installed are skipped with the name of its extra. test_other_engines.py tests MJX.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ FURTHER = tuple(engine for engine in QUICKLY if engine not in DEFAULTS)
 
 
 def installed(engine: Engine) -> Engine:
-    """The engine, or a skip that names its package."""
+    """Return the engine, or skip the test with the name of the package."""
     if engine.missing:
         pytest.skip(engine.missing)
     return engine
@@ -57,14 +57,14 @@ AXLES = tuple(
 
 
 def meshed(ratio: float, first: str = "a", second: str = "b") -> Mechanism:
-    """Two eccentric wheels on the ground with a gear between them, and a torque on one of them."""
+    """Two eccentric wheels on the ground with a gear between them. A torque acts on one wheel."""
     angle = {"a": 0.3, "b": 0.5}
     gear = Gear("mesh", first, second, ratio, angle[second] - ratio * angle[first])
     return Mechanism(WHEELS, (*AXLES, gear), GRAVITY, (Torque("motor", None, "a", 1.7),))
 
 
-# Further configurations: the bodies of a drive or slot in the opposite order to another joint, an angle beyond a turn,
-# two forces on one body, and a speed at which limits or the sleep of an engine could act.
+# Further configurations: a drive or slot with bodies in the opposite order, an angle of more than a turn, two forces on
+# one body, and speeds at which limits or the sleep of an engine could act.
 CONFIGURATIONS = {
     "a drive against its pin": Mechanism(TWO, (*HUNG, Drive("motor", "second", "first", 2.0, 0.0)), GRAVITY),
     "a held angle against its slot": Mechanism(
@@ -93,14 +93,14 @@ CONFIGURATIONS = {
     ),
     "faster than any usual limit": Mechanism((block("shot", (0.0, 0.0, 0.0), (1000.0, 0.0, 0.0)),), ()),
     "too slow to stay awake": Mechanism((block("drifting", (0.0, 0.0, 0.0), (1e-3, 2e-3, 1e-3)),), ()),
-    # Linkages that are free or driven or have a slider, and chains.
+    # Free and driven linkages, a linkage with a slider, and chains.
     **{name: scene(name).mechanism() for name in ("free_four_bar", "driven_slider_crank", "pendulum_2", "pendulum_10")},
     "weld that closes a loop": replace(
         ALONE["weld in a loop"], joints=tuple(joint for joint in ALONE["weld in a loop"].joints if joint.name != "weld")
     ),
 }
 MECHANISMS = {**ALONE, "all": ALL, "all damped": DAMPED, **CONFIGURATIONS}
-# The elements that extras build, by engine, or by method if a method builds fewer.
+# Sets of elements. BUILDS contains the elements that an extra engine builds, or a method that builds fewer elements.
 PINNED = {
     *("torsion spring", "torsion damper", "torque", "force", "weld", "weld to the ground", "two forces on a body")
 }
@@ -123,8 +123,8 @@ BUILDS = {
     "drake cenic": UNCONSTRAINED | GROUNDED_GEARS,
 }
 SAMPLES, SPACING = 6, 0.05
-# The error that does not fall with the step, by engine: from the tolerance of the solver, an inertia of 1e8 times the
-# mechanism's for drives, or single precision.
+# Engine -> error that does not fall with the step. It comes from the tolerance of the solver, from the large inertia of
+# drives, or from single precision.
 SMALL = {
     "exudyn": 1e-8,
     "box2d": 1e-4,
@@ -140,7 +140,7 @@ SMALL = {
 
 
 def span(name: str) -> float:
-    """Return the duration [s]: a tenth of a scene, in which an error grows at most linearly, or 0.3 s."""
+    """Return the duration [s]. It is a tenth of a scene's duration, in which errors grow at most linearly, or 0.3 s."""
     return 0.1 * scene(name).duration if name in {scene_.name for scene_ in SCENES} else SAMPLES * SPACING
 
 
@@ -150,14 +150,14 @@ def exact(name: str) -> np.ndarray:
 
 
 def missed(engine: Engine, own: Mechanism, name: str, every: int) -> float:
-    """The largest error of a pose at the end, in rad and in lengths of the mechanism."""
+    """The largest error of poses, in rad and in lengths of the mechanism."""
     run = engine.build(own, span(name) / SAMPLES / every)(SAMPLES, every)
     assert run.reset_at is None
     return float((np.abs(run.pose - exact(name)) / own.pose_unit).max())
 
 
-# Extras need not solve loops with redundant rows. Daily tests run a third of the mechanisms in each engine, and a ninth
-# in further variants of extras.
+# Extra engines need not solve loops with redundant rows. Daily tests run a third of the mechanisms in each engine. In
+# further variants of extra engines they run a ninth.
 CELLS = [
     pytest.param(
         engine, name, marks=() if (place + number) % (9 if engine in FURTHER else 3) == 0 else pytest.mark.slow
@@ -165,7 +165,7 @@ CELLS = [
     for place, engine in enumerate(ENGINES)
     for number, name in enumerate(MECHANISMS)
     if name != "weld in a loop" or engine not in QUICKLY
-    if (engine.name, name) != ("rapier", "faster than any usual limit")  # it reduces the velocity, see test_browser.py
+    if (engine.name, name) != ("rapier", "faster than any usual limit")  # It reduces velocities, see test_browser.py.
 ]
 
 
@@ -183,7 +183,7 @@ def test_an_engine_has_its_declared_order_or_refuses_the_element_by_name(engine:
             engine.build(linkage, 1e-3)
         assert any(element_name in str(refused.value) for element_name in named), str(refused.value)
         return
-    # At these steps errors of order 1 are far above those of order 2, and errors of order 4 are far above rounding.
+    # At these steps errors of order 1 are far larger than errors of order 2. Errors of order 4 are far above rounding.
     coarse, fine = (missed(engine, linkage, name, every) for every in (40, 80))
     way = np.abs(exact(name) - exact(name)[0]).max() / linkage.length_scale
     promise = engine.order(linkage)
@@ -191,7 +191,7 @@ def test_an_engine_has_its_declared_order_or_refuses_the_element_by_name(engine:
     if not isinstance(promise, ConvergenceOrder) or (
         soft[0] is not None and soft[0] == soft[1] and soft[0].compliance > 1e-6
     ):
-        assert fine < max(0.05, 0.1 * way)  # a compliance that does not depend on the step: its error is a plateau
+        assert fine < max(0.05, 0.1 * way)  # A constant compliance causes a plateau of the error.
         return
     order = promise.of("angle")
     assert fine < max(SMALL[engine.name] * max(1.0, way), 1.3 * coarse / 2 ** min(order, 4)) or order == EXACT
@@ -202,14 +202,14 @@ def test_an_engine_has_its_declared_order_or_refuses_the_element_by_name(engine:
 
 
 def in_units(engine: Engine, name: str, length: float = 1.0, mass: float = 1.0) -> list[np.ndarray]:
-    """Return poses, twists and reactions of the scene in other units, converted to metres and kilograms."""
+    """Run the scene in other units, and return poses, twists and reactions in metres and kilograms."""
     linkage = in_other_units(scene(name), (length, 1.0, mass)).mechanism()
     run = engine.build(linkage, 1e-3)(5, 10)
     unit, arm = np.array([length, length, 1.0]), np.where(linkage.is_angular, length**2, length)
     return [run.pose / unit, run.twist / unit, run.reaction / (mass * arm)]
 
 
-# As shipped MuJoCo's impedance depends on the gap in metres, and the tolerance of its solver on m/s^2.
+# By default MuJoCo's impedance depends on the gap in metres, and the tolerance of its solver has the unit m/s^2.
 OWN = (*pymunk.VARIANTS, mujoco.TUNED, mujoco.EXTENDED)
 UNITS = [(2.0**-10, 1.0), (1.0, 1e6)]
 
@@ -219,7 +219,7 @@ UNITS = [(2.0**-10, 1.0), (1.0, 1e6)]
 def test_methods_do_not_depend_on_units_of_length_and_mass(engine: Engine, name: str) -> None:
     linkage = in_units(engine, name)
     for length, mass in UNITS:
-        # Rounding differs, a stiff spring amplifies it, and a reaction is a change of velocity over 1e-4 s.
+        # A stiff spring amplifies rounding. So does a reaction, which is a change of velocity over 1e-4 s.
         for changed, right, allowed in zip(
             in_units(engine, name, length, mass), linkage, (1e-9, 1e-9, 1e-6), strict=True
         ):
@@ -228,12 +228,12 @@ def test_methods_do_not_depend_on_units_of_length_and_mass(engine: Engine, name:
 
 @dataclass(frozen=True)
 class Belt(Gear):
-    """A joint that no adapter knows: it couples two rotations by the ratio of two pulleys."""
+    """A joint that no adapter knows. It couples two rotations by the ratio of two pulleys."""
 
 
 @dataclass(frozen=True)
 class Brake(Torque):
-    """A force element that no adapter knows: a smoothed Coulomb torque."""
+    """A force element that no adapter knows. It is a smoothed Coulomb torque."""
 
     def on(self, first, second, first_twist, second_twist):
         rate = second_twist[..., 2] - first_twist[..., 2]
@@ -248,7 +248,7 @@ PINS = (Pin("A", None, "a", (0.0, 0.0), (0.0, 0.0)), Pin("B", None, "b", (1.0, 0
 WITH_BELT = Mechanism(PLATES, (*PINS, Belt("belt", "a", "b", 2.0)), (0.0, 0.0))
 WITH_BRAKE = Mechanism(PLATES, PINS, (0.0, 0.0), (Brake("brake", None, "a", 0.2),))
 EVERY_ENGINE = (*registry.ENGINES, *registry.OTHERS)
-OURS = ("lagrange", "box2d", "bullet", "pinocchio", "drake")  # they evaluate force elements by the elements' own law
+OURS = ("lagrange", "box2d", "bullet", "pinocchio", "drake")  # These engines use the law of a force element.
 
 
 REFUSED = [(engine, WITH_BELT, "Belt") for engine in EVERY_ENGINE if engine.name != "lagrange"]
@@ -290,7 +290,7 @@ def test_engines_that_evaluate_force_elements_accept_an_unknown_law(name):
     if engine.missing:
         pytest.skip(engine.missing)
     run = engine.build(WITH_BRAKE, 1e-3)(10, 50)
-    # 0.2 N m act on 0.1 kg m^2 for 0.5 s. The tanh differs from 1 by 2e-9 if the plate is faster than 1 rad/s.
+    # A torque of 0.2 N m acts on 0.1 kg m^2 for 0.5 s. The tanh differs from 1 by 2e-9 at more than 1 rad/s.
     assert run.twist[-1, 0, 2] == pytest.approx(1.0, abs=2e-4)
 
 

@@ -1,4 +1,4 @@
-"""Declared orders and enforcement follow from the settings of an engine and the mechanism, without a scene."""
+"""Tests that declared orders and enforcement follow from the settings of an engine and from the mechanism."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SLIDER = DrivenSliderCrank().mechanism()
 
 
 def slot_off_the_centre() -> Mechanism:
-    """A slider in a slot whose point is not its centre of mass, so that the force of the slot turns it."""
+    """A slider in a slot. Its point in the slot is not its centre of mass, so the force of the slot turns it."""
     joints = [joint for joint in SLIDER.joints if not (isinstance(joint, Drive) and joint.turning_rate == 0)]
     moved = (replace(joint, second_point=(0.1, 0.0)) if isinstance(joint, Slot) else joint for joint in joints)
     return replace(SLIDER, joints=tuple(moved))
@@ -70,7 +70,7 @@ ENGINES: tuple[Engine, ...] = (
 
 
 def words(engine: Engine, mechanism: Mechanism) -> str:
-    """A declared order as text, with the fields that differ from their defaults."""
+    """A declared order as text. Fields with default values are left out."""
     promise = engine.order(mechanism)
     if isinstance(promise, NotDeclared):
         return "no order"
@@ -98,7 +98,7 @@ def test_properties_of_a_motion_follow_from_joints_loads_and_start():
         False,
         True,
     ]
-    # Two skates leave a body one velocity, and a drive removes it. The poses are not prescribed.
+    # Two skates leave a body with one degree of freedom of velocity, which a drive removes. Poses are not prescribed.
     blades = (Skate("right", None, "body", (1.0, 0.0), 0.0), Skate("up", None, "body", (0.0, 1.0), math.pi / 2))
     body = Body("body", 1.0, 0.5, (0.0, 0.0, 0.0), (2.0, -2.0, 2.0))
     driven = Mechanism((body,), (*blades, Drive("drive", None, "body", 2.0, 0.0)))
@@ -138,7 +138,7 @@ def test_an_extrapolation_declares_its_rounding_and_the_steps_of_reactions():
 
 @dataclass(frozen=True)
 class Divided(Toy):
-    """An engine that enforces the first joint itself, and the other joints by our rows."""
+    """An engine that enforces the first joint. Our rows enforce all other joints."""
 
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         return "engine" if joint == mechanism.joints[0] else "engine, our rows"

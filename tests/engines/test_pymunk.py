@@ -1,6 +1,6 @@
-"""The pymunk adapter: models, refusals, rolls by contacts and pivots, skates by grooves, declared orders.
+"""Tests of the pymunk adapter: models, refusals, rolls by contacts and pivots, skates by grooves, declared orders.
 
-Errors and orders of each method in motion are tested in `test_matrix`.
+`test_matrix` tests the errors and orders of each method in motion.
 """
 
 from __future__ import annotations
@@ -52,11 +52,11 @@ def test_the_default_settings_are_those_of_pymunk():
     space, body = pymunk.Space(), pymunk.Body(1, 1)
     pivot = constraints.PivotJoint(space.static_body, body, (0, 0), (0, 0))
     assert space.iterations == DEFAULT.iterations == 10
-    assert pivot.error_bias == DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # pymunk rounds 0.1 to single
+    assert pivot.error_bias == DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # pymunk rounds 0.1.
 
 
 def test_prescribed_motions_need_no_constraints():
-    # The motion of the crank and the angle of the block are prescribed. Only pins and a groove are constraints.
+    # The crank and the angle of the block are prescribed. Only pins and a groove are constraints.
     for mechanism, rows in ((FREE, 8), (DRIVEN, 6), (DrivenSliderCrank().mechanism(), 5)):
         for method in (DEFAULT, EXTENDED):
             assert method.build(mechanism, 1e-3).size == Size(3, 9, rows, rows)
@@ -79,19 +79,20 @@ def test_a_crank_turns_about_its_pin_whichever_body_is_first(grounded_first):
     mechanism = Mechanism((body,), joints, (0.0, -9.81))
     for method in METHODS:
         trajectory = method.build(mechanism, 1e-2)(30, 3)
-        # The bound is rounding: the angle is a sum of at most 720 steps. Extrapolation multiplies it by less than 100.
+        # The bound is rounding. The angle is a sum of at most 720 steps, and extrapolation amplifies it up to 100-fold.
         assert largest(mechanism.gap(trajectory.pose, trajectory.t)) < 1e-12
         assert largest(mechanism.slip(trajectory.pose, trajectory.twist)) < 1e-12
-        # The pin carries weight and centripetal force, and the drive the moment of the weight about the pin.
+        # The pin carries weight and centripetal force. The drive carries the moment of the weight about the pin.
         swing = trajectory.pose[:, 0, :2] - centre
         sign = 1 if grounded_first else -1
         order = [0, 1, 2] if grounded_first else [1, 2, 0]
         force = sign * 2.0 * (-(rate**2) * swing + [0, 9.81])
         torque = sign * 2.0 * 9.81 * swing[:, 0]
         error = np.abs(trajectory.reaction[:, order] - np.column_stack([force, torque]))
-        assert error[1:].max() < 1e-9  # rounding.
-        # The first reaction is that of the third step, where the angle differs by 0.09 rad. LEAPFROG extrapolates it
-        # from the third and fourth steps, with an error of 6 (rate dt)^2. EXTENDED extrapolates it to step size zero.
+        assert error[1:].max() < 1e-9  # This is rounding.
+        # The first reaction is the reaction of the third step, at which the angle differs by 0.09 rad. LEAPFROG
+        # extrapolates it from the third and fourth steps, with an error of 6 (rate dt)^2. EXTENDED extrapolates it to
+        # step zero.
         assert error[0].max() < {DEFAULT: 0.09, TUNED: 0.09, LEAPFROG: 6e-3, EXTENDED: 1e-9}[method] * 2.0 * 9.81
 
 
@@ -105,7 +106,7 @@ def test_an_unstable_motion_raises_no_exception(method):
 
 
 def thrown(mass: float | None = None) -> Mechanism:
-    """A sleigh with a velocity whose square overflows, or two links with an extreme ratio of masses."""
+    """A sleigh with a velocity whose square overflows. With `mass`, two links with an extreme ratio of masses."""
     if mass is None:
         sled = ChaplyginSleigh().mechanism()
         return replace(sled, bodies=(replace(sled.bodies[0], twist=(1e150, 0.0, 0.0)),))
@@ -166,7 +167,7 @@ def angle_error(engine, scene: Scene, every: int) -> float:
 
 
 def test_a_pivot_is_placed_at_the_contact_after_the_drift_of_two_bodies():
-    """The anchors are equal to those for bodies at the poses after the drift."""
+    """The anchors are the same as for bodies that start at the poses after the drift."""
     joint = next(joint for joint in EllipticGears().mechanism().joints if isinstance(joint, Roll))
 
     def anchors(ahead: float, elapsed: float) -> list[float]:
@@ -187,13 +188,13 @@ def test_the_error_of_a_polygon_falls_with_its_corners_and_not_with_the_step():
         coarse, fine = (angle_error(engine, ELLIPSE, every) for every in (10, 30))
         plateaus[engine.contact.vertices] = fine
         if engine.contact.vertices == 128:
-            assert fine == pytest.approx(coarse, rel=0.1)  # the step has little effect
+            assert fine == pytest.approx(coarse, rel=0.1)  # The step has little effect.
     assert plateaus[8] > plateaus[32] > plateaus[128] > plateaus[512] > 0.03
     assert plateaus[512] < 0.2
 
 
 def test_upstream_a_fine_polygon_stops_on_ground_without_thickness():
-    """Chipmunk computes a wrong normal of some contact on a segment without a radius."""
+    """Chipmunk computes wrong normals for some contacts on a segment without a radius."""
     fine = methods.ROLL_FACETED[-1]
     on_thin_ground = replace(fine, contact=replace(fine.contact, thickness=0.0))
     thin, thick = (run(engine, ELLIPSE, 10).twist[5, 0, 2] for engine in (on_thin_ground, fine))
@@ -211,7 +212,7 @@ def test_a_round_body_leaves_the_hill_where_the_contact_force_becomes_zero():
 
 
 def side_by_side(places, rates) -> Mechanism:
-    """Discs that roll on one straight ground, each with a contact of its own."""
+    """Discs that roll on the same straight ground. Every disc has a separate contact."""
     pairs = [
         rolling_disc(Rolling.at_angle(Circle(0.4), Line(through=(place, 0.0)), 0.0, 0.0), rate, f"disc {place}")
         for place, rate in zip(places, rates, strict=True)
@@ -234,7 +235,7 @@ def test_thirty_two_contacts_are_built_and_one_more_is_refused():
 
 
 def test_a_scaled_ellipse_turns_by_the_same_angles():
-    """Lengths and gravity have the same factor. Ground of a fixed thickness would change the angle by a radian."""
+    """Lengths and gravity have the same factor. A constant thickness of the ground would cause an error of 1 rad."""
     scale = 1e5
     x, y = ELLIPSE.gravity
     large = replace(ELLIPSE, along_x=scale * 0.5, along_y=scale * 0.3, gravity=(scale * x, scale * y))
@@ -244,13 +245,13 @@ def test_a_scaled_ellipse_turns_by_the_same_angles():
 
 
 def test_a_run_ends_with_a_warning_where_the_curves_lose_contact():
-    """A disc rolls over the end of a flat side. Beyond it the curves have no contact for the pivot."""
+    """A disc rolls over the end of a flat side. Beyond this end the curves have no contact for the pivot."""
     rolling = Rolling.at_arcs(Circle(0.4), Placed(Side(1.0), turn=math.pi), 0.0, 0.0)
     disc, roll = rolling_disc(rolling, 4.0)
     mechanism = Mechanism((disc,), (roll,))
     trajectory = LEAPFROG.build(mechanism, 1e-2)(50, 1)
     is_finite = np.isfinite(trajectory.pose[:, 0, 0])
-    # It rolls at 1.6 m/s and the corner is 0.5 m away.
+    # The disc rolls at 1.6 m/s, and the distance of the corner is 0.5 m.
     assert trajectory.t[is_finite].max() == pytest.approx(0.5 / 1.6, abs=0.02)
     assert largest(trajectory.pose[is_finite, 0, 2] - disc.pose[2] - 4.0 * trajectory.t[is_finite]) < 1e-9
     assert any("could no longer be placed" in warning for warning in trajectory.warnings)
@@ -259,7 +260,7 @@ def test_a_run_ends_with_a_warning_where_the_curves_lose_contact():
 @pytest.mark.parametrize("step", [1e-3, 3e-4])
 def test_the_first_force_of_a_contact_is_converged(step):
     run, truth = TUNED.build(DISC.mechanism(), step)(1, 1), DISC.motion(np.array([0.0]))
-    # The error is of first order, 1.4e-3 of the force for a step of 1 ms. With five iterations it is half of the force.
+    # The error has order 1 and is 1.4e-3 of the force at a step of 1 ms. Five iterations would give half of the force.
     assert largest(run.reaction[0] - truth.reaction[0]) < 3e-3 * largest(truth.reaction[0])
 
 
@@ -273,8 +274,8 @@ def test_a_skate_on_a_moving_body_has_no_slip():
 
 
 def test_the_groove_of_a_blade_corrects_no_gap_and_adds_no_noise():
-    # If a step of 1e-4 s corrected a gap of 1e-16 m, which is rounding, reactions would change by 1e-6 N. Without the
-    # correction the error is 2e-10 N.
+    # If a step of 1e-4 s corrected a rounding gap of 1e-16 m, reactions would change by 1e-6 N. Without this correction
+    # the error is 2e-10 N.
     scene = ChaplyginSleigh(duration=3.0, horizon=3.0)
     trajectory = methods.SKATE_GROOVE_EXTRAPOLATED.build(scene.mechanism(), 1e-3)(100, 30)
     right = scene.motion(trajectory.t)
@@ -295,7 +296,7 @@ def with_blade_at_centre() -> Mechanism:
 
 
 DAMPER = TorsionDamper("damper", None, "rocker", 0.1)
-# A mechanism for each row of `declared.ORDERS`, and the constructions with which it belongs to the row.
+# Row of `declared.ORDERS` -> a mechanism and constructions that belong to the row.
 ORDER_CASES = {
     "contact": (DISC.mechanism(), {"roll": "contact"}),
     "set velocity": (with_blade_at_centre(), {"skate": "centre"}),

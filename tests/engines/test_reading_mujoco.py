@@ -1,4 +1,4 @@
-"""The reader of MuJoCo models: equal accelerations for each element, or a refusal that names the element."""
+"""Tests of the reader for MuJoCo models. An element has equal accelerations, or a refusal names the element."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from engines.mujoco.reading.settings import switch_off
 from engines.reading import Reading, ReadingTerms
 from reports.check.judging import pose_distance, refuse_disagreement, soft_motion
 
-# The rounding of small systems of equations whose coefficients differ by a factor of at most a thousand.
+# Rounding of small systems of equations with coefficients that differ by a factor of at most a thousand.
 SMALL_SYSTEM_ROUNDING = 1e-9
 TWO_LINKS = """
 <body name="upper"><joint name="A" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 .1" size=".02"/>
@@ -32,7 +32,7 @@ CONNECT_EQUALITY = '<connect name="C" body1="coupler" body2="rocker" anchor=".8 
 
 
 def model_of(bodies, more="", option="", turned=""):
-    """A model without contact, whose default joints turn about y. `turned`: attributes of a body around the model."""
+    """A model without contact. Its joints turn about y by default. turned: attributes of a body around the model."""
     inside = f'<site name="post" pos=".2 0 .9"/>{bodies}'
     inside = f"<body {turned}>{inside}</body>" if turned else inside
     return mujoco.MjModel.from_xml_string(f"""
@@ -42,20 +42,20 @@ def model_of(bodies, more="", option="", turned=""):
 
 
 def moving(model, seed=1):
-    """The model at its start with random velocities that satisfy its equalities."""
+    """The initial state of the model with random velocities that satisfy the equalities."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     wanted = np.random.default_rng(seed).uniform(-2, 2, model.nv)
     rows = jacobian(model, data)[data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)]
     data.qvel[:] = wanted - np.linalg.pinv(rows) @ (rows @ wanted) if len(rows) else wanted
-    if np.abs(data.qvel).max() < 1e-12:  # nothing can move
+    if np.abs(data.qvel).max() < 1e-12:  # No motion is possible.
         data.qvel[:] = 0.0
     mujoco.mj_forward(model, data)
     return data
 
 
 def changed(reading: Reading, **values) -> Reading:
-    """The reading with a mechanism that differs from the model."""
+    """The reading with changed values of the mechanism. The model is not changed."""
     return replace(reading, mechanism=replace(reading.mechanism, **values))
 
 
@@ -64,7 +64,7 @@ BOX = '<inertial pos=".1 0 .05" mass="2" diaginertia=".02 .03 .03"/>'
 SLIDE, TURNED = '<joint type="slide" axis="1 0 2"/>', '<joint pos=".2 0 0"/>'
 ALONG = '<joint type="slide" axis="1 0 0"/>'
 CROSSED = f'{ALONG}<joint type="slide" axis="0 0 1"/>'
-# All connections of a body with its parent.
+# All ways to connect a body with its parent.
 CONNECTIONS = (SLIDE, SLIDE + TURNED, TURNED + SLIDE, CROSSED + TURNED, CROSSED, '<joint axis="0 -1 0"/>')
 TREES = TWO_LINKS.replace(
     "<site", f'<body pos=".4 0 .2"><geom fromto="0 0 0 .1 0 .2"/></body><body pos=".1 0 0">{ALONG}{BOX}</body><site'
@@ -109,8 +109,8 @@ def test_an_element_gives_the_same_accelerations_in_any_plane(name, turned):
     data.ctrl[:] = 0.7
     reading = read(model, data)
     assert refuse_disagreement(reading) < SMALL_SYSTEM_ROUNDING
-    assert any(note.element == "gravity" for note in reading.notes)  # Its component across the plane.
-    # Without forces and with another gravity the accelerations differ.
+    assert any(note.element == "gravity" for note in reading.notes)  # The component across the plane.
+    # If forces are removed and gravity is changed, the accelerations differ.
     with pytest.raises(Unsupported, match="differ from those of the ideal mechanism"):
         refuse_disagreement(changed(reading, gravity=(0.3, -5.0), forces=()))
 
@@ -120,13 +120,13 @@ def test_a_free_body_that_starts_in_the_plane_is_read():
         '<body name="a" pos="0 0 1"><freejoint/><inertial pos="0 0 0" mass="2" diaginertia=".1 .2 .3"/></body>'
     )
     data = mujoco.MjData(model)
-    data.qvel[:] = [1.0, 0.0, 2.0, 0.0, 3.0, 0.0]  # linear velocity in the world, angular velocity in the body frame
+    data.qvel[:] = [1.0, 0.0, 2.0, 0.0, 3.0, 0.0]  # Linear in the world frame, angular in the body frame.
     reading = read(model, data)
     assert refuse_disagreement(reading) < SMALL_SYSTEM_ROUNDING
     (body,) = reading.mechanism.bodies
     assert reading.mechanism.degrees_of_freedom() == (3, 3)
     assert body.inertia == pytest.approx(0.2)
-    run = reading.model.run(100, 10)  # 2 s, in which the body makes almost a turn, so the angle must be unwrapped
+    run = reading.model.run(100, 10)  # In 2 s the body makes almost a turn.
     assert run.pose[-1, 0, 2] - run.pose[0, 0, 2] == pytest.approx(np.sign(body.twist[2]) * 3.0 * run.t[-1], rel=1e-6)
 
 
@@ -190,7 +190,7 @@ def test_a_soft_loop_moves_according_to_its_declared_regularisation():
     reading = read(model_of(*MJCF_MODELS["a connect"], 'timestep="0.0002" integrator="RK4" tolerance="1e-15"'))
     run = reading.model.run(40, 50)
     soft = soft_motion(reading.mechanism, reading.model.regularisation, run.t)
-    # The error of RK4 with steps of 0.2 ms is far smaller, and the ideal motion differs by 1e-3.
+    # The error of RK4 with steps of 0.2 ms is far smaller than this tolerance. The ideal motion differs by 1e-3.
     assert pose_distance(reading.mechanism, soft, run.pose).max() < 1e-6
     stiffer = [replace(reading.model.regularisation(np.zeros(8), reading.mechanism.pose), compliance=np.zeros((8, 8)))]
     wrong = soft_motion(reading.mechanism, lambda gap, pose: stiffer[0], run.t)
@@ -264,7 +264,7 @@ def test_positions_follow_from_poses():
 
 
 def test_a_run_starts_with_the_mocap_body_of_the_state():
-    """A keyframe moves and turns the mocap body, which holds the pin of the pendulum."""
+    """A keyframe moves and rotates the mocap body that has the pin of the pendulum."""
     model = model_of(
         f'<body name="post" mocap="true"/><body name="bob">{CROSSED}<joint/><inertial pos=".2 0 0" mass="1" '
         'diaginertia=".1 .1 .1"/></body>',
@@ -276,13 +276,13 @@ def test_a_run_starts_with_the_mocap_body_of_the_state():
     reading = read(model, data)
     run = reading.model.run(10, 5)
     assert np.ptp(run.pose[:, 0, 2]) > 0.01
-    # With MuJoCo's default stiffness the weight opens the connect by less than a millimetre.
+    # With MuJoCo's default stiffness the weight causes a gap of less than 1 mm in the connect constraint.
     assert np.abs(reading.mechanism.gap(run.pose, run.t)).max() < 2e-3
 
 
-@pytest.mark.parametrize("sample", [11, 20])  # the rounded sum of steps of 0.1 s is below 1.1 s, and above 2 s
+@pytest.mark.parametrize("sample", [11, 20])  # The rounded sum of 0.1 s steps is below 1.1 s, or above 2 s.
 def test_samples_from_a_reset_on_are_nan(sample):
-    """MuJoCo resets a state if a velocity exceeds mjMAXVAL = 1e10."""
+    """MuJoCo resets the state if a velocity exceeds mjMAXVAL = 1e10."""
     body = '<body><joint type="slide" axis="1 0 0"/><geom fromto="0 0 0 .1 0 0"/></body>'
     gravity = 1e10 / (0.1 * (sample - 0.5))
     run = read(model_of(body, option=f'gravity="{gravity} 0 0" timestep="0.1"')).model.run(30, 1)

@@ -1,4 +1,4 @@
-"""The reader of pymunk spaces and scripts: equal accelerations, refusals by name, and changes of settings."""
+"""Tests of the reader for pymunk spaces and scripts: equal accelerations, refusals by name, changes of settings."""
 
 # pyright: reportAttributeAccessIssue=false
 # (`reading.model` is an OwnPymunk.)
@@ -29,12 +29,12 @@ from engines.pymunk.reading import READER, read
 from engines.reading import AS_IT_IS
 from reports.check.judging import measure_errors, reference_motion, refuse_disagreement
 
-# The accelerations are extrapolated from two small steps, with an error of about 1e-8, the square of the step.
+# The accelerations are extrapolated from two small steps. The error is the square of the step, about 1e-8.
 ACCELERATION_ERROR = 1e-6
 
 
 def space_of(*makers, spin=0.7):
-    """A space with two bodies, a pin between the first body and the ground, and the constraints of the makers."""
+    """A space with two bodies, a pin between the first body and the ground, and a constraint by each function."""
     space = pymunk.Space()
     space.gravity = (0.5, -9.81)
     first, second = pymunk.Body(1.0, 0.05), pymunk.Body(2.0, 0.1)
@@ -54,7 +54,7 @@ def space_of(*makers, spin=0.7):
 
 
 def move_with_first(first, second):
-    """Give the second body the velocity that it would have as a part of the first body."""
+    """Set the velocity of the second body so that it moves like a part of the first body."""
     spin = first.angular_velocity
     second.velocity, second.angular_velocity = (-spin * second.position.y, spin * second.position.x), spin
 
@@ -119,7 +119,7 @@ def steady(space, first, second):
 
 
 def off_centre(space, first, second):
-    """A body whose centre of mass is not the origin of its anchors."""
+    """A constraint on a body whose centre of mass is not the origin of its anchors."""
     odd = pymunk.Body(2.0, 0.3)
     odd.center_of_gravity = (0.1, -0.2)
     odd.position, odd.angle = (2.0, 2.0), 0.5
@@ -166,7 +166,7 @@ def test_a_force_on_a_body_is_read_as_constant_with_a_note():
     assert [type(force).__name__ for force in reading.mechanism.forces] == ["Force", "Torque"]
     assert any(note.element == "the force or torque that stands on body 2" for note in reading.notes)
     assert refuse_disagreement(reading) < ACCELERATION_ERROR
-    # The force alone moves the body by 0.5 m in 1 s, so the test detects a force that acts only in the first step.
+    # The force moves the body by 0.5 m in 1 s. So the test detects a force that acts only in the first step.
     linkage, ideal = reading.model.run(10, 10), TRUTH.build(reading.mechanism, 0.1)(10, 1)
     assert np.abs(linkage.pose - ideal.pose).max() < 0.1
 
@@ -280,7 +280,7 @@ for a, b, at in (
 """
 LINE_FOLDER = Path(__file__).parents[2] / "reports" / "pages" / "your_loop" / "lines"
 CLOSE_CODE = (LINE_FOLDER / "close.txt").read_text(encoding="utf-8")
-# Earlier releases wrote these lines, which prevent the drift by a position_func.
+# Earlier releases wrote these lines. They prevent drift by a position_func.
 OLD_CODE = """
 for joint in space.constraints:
     joint.error_bias = 0
@@ -314,7 +314,7 @@ def test_a_script_that_starts_half_a_step_ahead_is_read_in_the_state_before(past
     assert mechanism.pose[0] == pytest.approx([0, 25, 0], abs=1e-12)
     assert np.abs(mechanism.twist).max() < 1e-12
     truth = reference_motion(mechanism, 50, 1e-2).trajectory
-    # The error would be 0.1 with default settings, and 0.006 without the half step.
+    # With default settings the error would be 0.1. Without the half step it would be 0.006.
     assert measure_errors(mechanism, truth, reading.model.run(50, 10)).largest < 1e-3
 
 
@@ -350,6 +350,6 @@ def rope():
 def test_unstable_settings_are_not_offered():
     changes = rope().changes(1e-4)
     closed = {dict(change.options)["iterations"] for change in changes if dict(change.options)["bias"] == 0}
-    # For N = 30 links 1 - rho = pi^2 / (4 N^2), so a quarter of the slowest mode is left after about 500 iterations.
+    # For N links 1 - rho = pi^2 / (4 N^2). With N = 30 the slowest mode is a quarter after about 500 iterations.
     assert min(closed) > 100
     assert {dict(change.options)["iterations"] for change in changes} >= {10, 50}

@@ -1,4 +1,4 @@
-"""Export of scenes to MJCF, pymunk scripts and URDF. The files are read back as equal mechanisms, to rounding.
+"""Tests that scenes exported to MJCF, pymunk scripts and URDF are read back as equal mechanisms, to rounding.
 
 A file with rounded digits is read as a planar model with a note about the effect.
 """
@@ -36,10 +36,10 @@ from tests import independent
 from tests.engines.test_matrix import rod_in_a_slot
 from tests.mechanisms import ALONE
 
-# The difference is rounding times the condition of the rows. The largest is 2e-13, for ten four-bars in line, which are
-# 0.05 rad from a singular position.
+# The difference is rounding times the condition number of the rows. The largest difference is 2e-13. It occurs for ten
+# four-bars in line, which are 0.05 rad from a singular position.
 ROUND_TRIP_ROUNDING = 1e-12
-# Neither engine has a joint for a skate or a roll. Readers cannot recognise our constructions of these.
+# Neither engine has a joint for a skate or a roll. Readers can't recognise our constructions of these joints.
 WITHOUT_JOINT = (Skate, Roll)
 EXPORTABLE = [
     scene for scene in SCENES if not any(isinstance(joint, WITHOUT_JOINT) for joint in scene.mechanism().joints)
@@ -51,8 +51,8 @@ ELASTIC = ("pin", "gear", "spring", "damper", "torsion-spring", "torsion-damper"
 def assert_equal(mechanism: Mechanism, other: Mechanism, driven: tuple[str, ...] = ()) -> None:
     """Assert that accelerations, total joint forces on every body, and degrees of freedom are equal.
 
-    `driven`: bodies of a prescribed motion, of which an engine stores neither mass nor centre of mass: only their
-    rotations are compared, and the forces on all other bodies.
+    driven: bodies with a prescribed motion. An engine does not store the mass and centre of mass of these bodies, so
+    only their rotations are compared, and the forces on other bodies.
     """
     is_free = np.array([body.name not in driven for body in mechanism.bodies])
     order = [other.body_index(body.name) for body in mechanism.bodies]
@@ -84,7 +84,7 @@ def from_script(text: str, folder) -> Mechanism:
     return read_pymunk(runpy.run_path(str(folder / "exported.py"))["make"]()).mechanism
 
 
-# Long chains take seconds and have the same elements as short chains.
+# Scenes without long chains, which take seconds and have the same elements as short chains.
 SHORT_SCENES = [scene for scene in SCENES if len(scene.mechanism().bodies) < 50]
 
 
@@ -148,7 +148,7 @@ def test_an_exported_script_with_a_constant_torque_has_the_engines_motion(tmp_pa
     run = PYMUNK.build(mechanism, 1e-5)(1, 200)
     read_back = read_pymunk(program["make"](), 1e-5).model.run(1, 200)
     angles = [body.angle for body in space.bodies]
-    # The engine takes the same steps in all three.
+    # The engine takes the same steps in all three runs.
     np.testing.assert_allclose(angles, run.pose[-1, :, 2], rtol=0, atol=1e-12)
     np.testing.assert_allclose(angles, read_back.pose[-1, :, 2], rtol=0, atol=1e-12)
 
@@ -189,7 +189,7 @@ def test_a_weld_is_exported_as_a_fixed_joint_of_urdf():
     np.testing.assert_allclose(data.qpos, [turned[0], turned[1] - turned[0]], rtol=0, atol=1e-7)
 
 
-IN_HALVES = random_mechanism(3, 2, ("pin", "slot"))  # a loop, in which a split body and a weld hold a slot
+IN_HALVES = random_mechanism(3, 2, ("pin", "slot"))  # A loop with a slot. Its body is split and welded.
 BY_CONTACT = ("sleigh", "cart", "rolling_ellipse")
 
 
@@ -203,13 +203,13 @@ def test_an_exported_model_has_the_engines_motion_and_bars_through_the_joints(na
     for _ in range(60):
         mujoco.mj_step(exported, data)
         mujoco.mj_step(model.compiled, engine_data)
-    # The tolerance of the solver has an effect, since the engine uses another unit of mass. The difference is 3e-7 m or
-    # more if the exported plane below a blade lacks the height that is set after compilation.
+    # The difference comes from the tolerance of the solver, since the engine uses another unit of mass. It would be at
+    # least 3e-7 m if the exported plane below a blade did not have the height that is set after compilation.
     np.testing.assert_allclose(data.qpos, engine_data.qpos, rtol=0, atol=1e-8)
     assert bool(model.split_bodies) == (name == "in halves")
     if name in BY_CONTACT:
         return
-    assert model.compiled.ngeom == 0  # bars are in the file alone
+    assert model.compiled.ngeom == 0  # Only the file has bars.
     assert not exported.geom_contype.any()
     assert not exported.geom_conaffinity.any()
     if name == "free_four_bar":
@@ -253,7 +253,7 @@ def test_a_rounded_file_has_the_exact_motion_and_a_note_of_the_effect(name):
     angles = motion.pose[..., 2] - motion.pose[:1, :, 2]
     ours = np.column_stack([angles[:, 0], angles[:, 1] - angles[:, 0], angles[:, 2]])
     tilt = getattr(reading.model, "tilt")  # noqa: B009
-    # Differences of the start grow 30-fold in a second, and bodies beside the plane are displaced by the tilt.
+    # Initial differences grow 30-fold in a second. The tilt displaces bodies that are not in the plane.
     assert np.abs(np.abs(ours) - np.abs(coordinates)).max() < 30 * tilt + 1e-8
     assert refuse_disagreement(reading) < 1e-9
     judged = check(reading, name, 0.5, 1e-2, plan=SweepPlan(0.0))

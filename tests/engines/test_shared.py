@@ -1,4 +1,4 @@
-"""Fast contacts of rolling pairs, and motions of spanning trees, which several adapters use."""
+"""Tests of fast contacts of rolling pairs and of motions of spanning trees. Several adapters use both."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def rolling_of(scene: Scene) -> Rolling:
     return next(joint.rolling for joint in scene.mechanism().joints if isinstance(joint, Roll))
 
 
-# Centres and frames are displaced, so that no constant of the closed forms is zero.
+# Centres and frames are displaced, so that no constant in the formulas is zero.
 DISC = Placed(Circle(0.25, (0.05, -0.02)), turn=0.7, shift=(0.03, 0.04))
 HILL = Placed(Circle(0.9, (0.2, 0.1)), turn=-0.4, shift=(0.5, 1.0))
 PAIRS = {
@@ -62,7 +62,7 @@ def as_complex(vectors: np.ndarray) -> np.ndarray:
 
 
 def far_and_back(rolling: Rolling) -> np.ndarray:
-    """Rotations [rad] in both directions, with jumps, far beyond the first cells of a table."""
+    """Rotations [rad] in both directions. They have jumps and reach far beyond the first cells of a table."""
     theta = rolling.theta + np.concatenate([np.linspace(-9.0, 9.0, 203), [7.3, -2.0, 4.0]])
     low, high = rolling.limits
     return theta[(low < theta) & (theta < high)]
@@ -73,15 +73,15 @@ def test_poses_contacts_and_arms_equal_the_reference_to_rounding(rolling: Rollin
     theta = far_and_back(rolling)
     place, first, second = np.array(list(map(rolled(rolling).place, theta.tolist()))).T
     rate = np.ones_like(theta)
-    # The tolerances are a few rounding errors of lengths of about 1 m. In a hole the contact turns up to four times as
-    # fast as the body, and the reference finds it iteratively to 1e-14.
+    # The tolerances are several rounding errors of lengths of about 1 m. In a hole the contact turns up to four times
+    # as fast as the body, and the reference computes it iteratively to 1e-14.
     assert np.abs(place - as_complex(rolling.pose(theta))).max() < 2e-14
     assert np.abs(first - as_complex(rolling.velocity(theta, rate))).max() < 1e-13
     assert np.abs(second - as_complex(rolling.acceleration(theta, rate, 0 * rate))).max() < 5e-13
     fast, exact = rolled(rolling), rolling.contact(theta)
     for angle, point, arm in zip(theta.tolist(), as_complex(exact.point), as_complex(exact.arm), strict=True):
         ground, on_body = fast.contact(angle)
-        assert abs(ground - point) < 1e-13  # m: rounding of an arc of a few metres
+        assert abs(ground - point) < 1e-13  # rounding of an arc of several metres [m]
         assert abs(fast.arm(angle) - arm) < 1e-13
         assert abs(on_body + arm * cmath.rect(1.0, -angle)) < 1e-13
 
@@ -102,7 +102,7 @@ def test_beyond_the_end_of_a_curve_there_is_no_contact() -> None:
     rolling = Rolling.at_angle(Circle(0.1), Placed(Side(0.4), turn=math.pi))
     low, high = rolling.limits
     fast = rolled(rolling)
-    assert abs(high - 2.0) < 1e-12  # 0.2 m of a circle of 0.1 m
+    assert abs(high - 2.0) < 1e-12  # an arc of 0.2 m on a radius of 0.1 m
     assert abs(fast.place(high - 1e-9)[0] - complex(*rolling.pose(high - 1e-9)[:2])) < 1e-15
     for beyond in (low - 1e-3, high + 1e-3, math.inf, math.nan):
         assert math.isnan(fast.place(beyond)[0].real)
@@ -129,7 +129,7 @@ def test_twists_and_accelerations_are_the_derivatives_of_the_poses(mechanism):
     pose, twist, acceleration = tree.motion(positions, rate + change * t, np.tile(change, (3, 1)))
     for values, derivative in ((pose, twist), (twist, acceleration)):
         differences = (values[2] - values[0]) / (2 * h)
-        # The error of the difference is h^2 / 6 times the third derivative, which has cubes of sums of many rates.
+        # The error of the difference is h^2 / 6 times the third derivative, which contains cubes of sums of rates.
         np.testing.assert_allclose(differences, derivative[1], rtol=0, atol=1e-4 * np.abs(derivative).max())
     for value, expected in zip(tree.instant(position, rate), (pose[1], twist[1]), strict=True):
         np.testing.assert_allclose(value, expected, rtol=0, atol=1e-13 * np.abs(expected).max())

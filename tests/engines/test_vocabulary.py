@@ -1,4 +1,4 @@
-"""A joint and a force element that only the vocabulary knows: everything else refuses them by name."""
+"""Tests with a joint and a force element that only the vocabulary knows. All other code refuses them by name."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from reports.search.parts import Recipe, RecipeBody
 
 @dataclass(frozen=True)
 class Rack(BetweenTwo, JointElement):
-    """The second body moves along the world's x axis by `radius` [m] times the rotation of the first."""
+    """A joint that moves the second body along the world's x axis by `radius` [m] times the first body's rotation."""
 
     labels: ClassVar[tuple[str, ...]] = ("along",)
 
@@ -43,7 +43,7 @@ class Rack(BetweenTwo, JointElement):
 
 @dataclass(frozen=True)
 class Friction(BetweenTwo, ForceFacts):
-    """A smoothed Coulomb torque [N m] of the first body on the second."""
+    """A smoothed Coulomb torque [N m] that the first body exerts on the second body."""
 
     torque: float = 0.2
 
@@ -68,14 +68,14 @@ WHEEL = Body("wheel", 2.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0))
 SLEDGE = Body("sledge", 1.0, 0.1, (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
 AXLE = Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0))
 ENGINES = tuple({engine.name: engine for engine in (*registry.VARIANTS, *registry.OTHERS)}.values())
-# These evaluate force elements by the elements' own law.
+# These engines evaluate the law of a force element.
 FORCES_BY_LAW = {engine.name for engine in ENGINES if engine.capability and engine.capability.forces is None}
 
 
 @pytest.fixture
 def with_rack(monkeypatch):
     _widen(monkeypatch, "Joint", Joint | Rack)
-    rack: Any = Rack("rack", "wheel", "sledge")  # not in the union that the type checker sees
+    rack: Any = Rack("rack", "wheel", "sledge")  # The type checker does not know this joint.
     yield Mechanism((WHEEL, SLEDGE), (AXLE, rack), (0.0, 0.0))
     checks._validators_of_fields.cache_clear()
 
@@ -110,7 +110,7 @@ def test_the_judge_moves_unknown_elements_by_their_own_rows_and_law(with_rack, w
     judge = next(engine for engine in ENGINES if engine.name == "lagrange")
     twist = judge.build(with_rack, 1e-3)(10, 50).twist
     assert twist[-1, 1, 0] == pytest.approx(0.5 * twist[-1, 0, 2], abs=1e-9)
-    # The tanh differs from 1 by 2e-9 while the wheel is faster than 1 rad/s.
+    # The tanh differs from 1 by 2e-9 if the wheel is faster than 1 rad/s.
     rate = judge.build(with_friction, 1e-3)(10, 50).twist[-1, 0, 2]
     assert rate == pytest.approx(2.0 - 0.2 / 0.1 * 0.5, abs=2e-3)
 
