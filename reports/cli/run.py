@@ -174,10 +174,15 @@ def run_interruptible(
     After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt.
     """
     by = crew or cluster.pool(None)
-    if is_cold(adaptive=False):
+    if is_cold(adaptive=False) and any(map(_needs_machine_code, items)):
         print("compiling the judge's machine code, once for this installation: up to two minutes", file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
         return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
+
+
+def _needs_machine_code(item: Cell | Task) -> bool:
+    """Whether the judge's code may be compiled for this item. Tasks of pages compare runs with the judge."""
+    return isinstance(item, Task) or "numba" in item.engine.packages
 
 
 def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:

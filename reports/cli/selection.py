@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from engines import Engine
 from reference.checks import LARGEST_COUNT
 from reference.scene import Scene
-from reports.gate.prediction import all_tasks
+from reports.gate.prediction import all_tasks, described_tasks
 from reports.model.cells import FULL, QUICK, Cell, beside_cells, estimated_seconds, sweep_cells, too_much, usual_cells
 from reports.model.ending import BadInput, nearest
 from reports.model.page import Page
@@ -72,7 +72,7 @@ def known_engines(pages: Sequence[Page]) -> tuple[Engine, ...]:
     from engines.registry import ENGINES, INSTALLED
 
     compared = (engine for page in pages for engine in (*page.engines, *(c.engine for c in page.extra_cells())))
-    of_tasks = (task.engine for page in pages for task in all_tasks(page) if task.engine is not None)
+    of_tasks = (task.engine for page in pages for task in described_tasks(page) if task.engine is not None)
     named = dict.fromkeys([*ENGINES, *INSTALLED, *compared, *of_tasks])
     return tuple(engine for engine in named if not engine.missing)
 

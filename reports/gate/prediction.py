@@ -327,7 +327,14 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
 
 
 def all_tasks(page: Page) -> tuple[Task, ...]:
-    """The distinct tasks of a page: for its text, for its experiments, and the judge's runs for its engines."""
-    experiments = [task for failure in page.failures for task in failure.tasks]
+    """The distinct tasks of a page: for its text, for its experiments, and the judge's runs for its engines.
+
+    The judge's runs follow from the engines' regularisations, so this builds models for all scenes of the page.
+    """
     declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
-    return tuple(dict.fromkeys([*page.tasks, *experiments, *declared]))
+    return tuple(dict.fromkeys([*described_tasks(page), *declared]))
+
+
+def described_tasks(page: Page) -> tuple[Task, ...]:
+    """The tasks for the text and the experiments of a page."""
+    return (*page.tasks, *(task for failure in page.failures for task in failure.tasks))
