@@ -117,7 +117,7 @@ class Sources:
 class Finding:
     """A finding with its numbers.
 
-    title, text: Markdown, without the link to `page`.
+    title, text: text in Markdown without the link to `page`.
     contradicted: claims that the rows do not confirm.
     lines, x, y: the lines of the picture and the labels of its axes.
     """

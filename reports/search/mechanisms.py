@@ -120,8 +120,8 @@ class _Draw(Integers):
     def _independent(
         self, standing: Standing, links: Sequence[RecipeLink]
     ) -> tuple[tuple[RecipeLink, ...], Sequence[Held]]:
-        """The links that can be combined, and their joints. The joints are independent and leave a degree of freedom or
-        a drive."""
+        """The links that are kept, and their joints. These joints are independent and leave a degree of freedom or a
+        drive."""
         held_joints: list[Held] = []
         kept_links: list[RecipeLink] = []
         freedom = 3 * len(standing.bodies)

@@ -52,7 +52,8 @@ ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
 DIVERGED_ERROR = 10.0  # A run with a larger error, relative to the motion, has diverged.
 DISTANT_POSE = 0.1  # Reactions are not compared if the pose error relative to the length scale is larger.
-CACHED_MECHANISMS = 16  # More than `chunk.CHUNK_SIZE`, since all engines run a chunk of cases before the next chunk.
+# More than `chunk.CHUNK_SIZE`, since all engines run the cases of one chunk before the next chunk.
+CACHED_MECHANISMS = 16
 RIGID_COMPLIANCE = 1e-10  # A joint with a smaller compliance, in units of the squared time scale, counts as ideal.
 ENGINE_WARNED = CheckSkipped("the engine warns that something is wrong")
 
@@ -210,8 +211,8 @@ class _Case:
         return None
 
     def noise(self, run: Trajectory, parts: int) -> Floors:
-        """The largest changes of the run and of the judge's motion by rounding, and of the run by a smaller solver
-        tolerance."""
+        """The largest changes by rounding, in the run and in the judge's motion, and by a smaller solver tolerance in
+        the run."""
         pairs: list[tuple[Trajectory, Trajectory]] = []
         for nudged, back in iter_nudged(self.mechanism):
             truth = judge_motion.__wrapped__(nudged)  # pyright: ignore[reportFunctionMemberAccess]

@@ -1,7 +1,7 @@
 """Controls with planted faults. A control gives an engine a wrong mechanism and measures when the search detects it.
 
-A mistake in an adapter has the same effect. A fault changes one number of all joints or force elements of a kind, or it
-changes the inertias. The change of inertias may depend on the description of the mechanism.
+A mistake in an adapter has the same effect as a planted fault. A fault changes one number of all joints or force
+elements of a kind, or it changes the inertias. The change of inertias may depend on the description of the mechanism.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ FAULT_FIELDS = {
     "force force": "force",
 }
 FAULT_ANGLES = ("line_angle", "angle", "rest_angle")
-CLOSING_STEPS = 6  # Newton steps that close the joints of a wrong mechanism
+CLOSING_STEPS = 6  # number of Newton steps that close the joints of a wrong mechanism
 
 
 @dataclass(frozen=True)
@@ -215,8 +215,8 @@ class PlantedControl(Task):
 
 
 def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: int) -> Iterator[tuple[int, bool, str]]:
-    """Yield (case, whether it was judged, check that fails only with the fault or ""), until such a check has
-    failed."""
+    """Yield (number of the case, whether it was judged, check) up to the first check that fails only with the fault;
+    until then the check is ""."""
     # To save time, an engine that compiles each shape is checked at instants only.
     of_motion = ("instant",) if any(engine.build_time for engine in engines) else ("instant", "motions")
     oracles = ("relations",) if change.is_relation else of_motion

@@ -43,8 +43,8 @@ Point = tuple[Decimal, Decimal]
 # Limit of the ratio of the smallest to the largest singular value of the rows. With a smaller ratio, rounding changes
 # the forces and the motion in every engine.
 DEPENDENCE_LIMIT = 1e-3
-SINGULAR_LIMIT = 1e-6  # The limit in mechanisms with toggles or folds.
-# Projected velocities that are smaller, relative to the recipe's velocities, are rounding errors.
+SINGULAR_LIMIT = 1e-6  # Limit of the same ratio in mechanisms with toggles or folds.
+# If all projected velocities are smaller, relative to those of the recipe, they are rounding errors.
 MOTION_ROUNDING = 1e-12
 
 

@@ -32,7 +32,7 @@ from reports.search.subjects import Subject
 STORE = "cells.sqlite"
 CHUNK_LIMIT = 120.0  # CPU time of a chunk [s].
 PLANTED_LIMIT = 1800.0  # CPU time of a control with a planted fault [s].
-WAVE_CHUNKS = 4  # Chunks for each worker between two checks of the time limit.
+WAVE_CHUNKS = 4  # Number of chunks for each worker between two checks of the time limit.
 DEFAULT_CASES = 200
 
 # Function of (store, tasks, limit, label, number of cases of a task). The result is a context with the tasks that are

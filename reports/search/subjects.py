@@ -102,7 +102,8 @@ def is_shaped(subject: Subject) -> bool:
 
 
 def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], engine: Engine | None) -> OracleResult:
-    """Run oracles. An exception is the fault "raised" if code of the engine raised it, else OUR_ERROR.
+    """Run oracles. An exception gives the fault "raised" if code of the engine raised it, otherwise the fault
+    OUR_ERROR.
 
     `engine`: None for MuJoCo alone.
     """

@@ -233,7 +233,7 @@ def _by_engine(lines: Sequence[EngineLine]) -> Iterator[tuple[str, list[EngineLi
 def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
     """The least error of a method's runs that take at most this CPU time [s/s]; infinite without such a run.
 
-    The error of a run is the maximum over its step and all smaller steps, since two errors may cancel at one step.
+    A run counts with the largest error at its step and all smaller steps, since two errors may cancel at one step.
     """
     worst, least = 0.0, math.inf
     for row in sorted(rows, key=lambda row: row.step):
@@ -304,7 +304,7 @@ def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_S
     same_runs = {key: next(iter(descriptions)) for key, descriptions in runs.items() if len(descriptions) == 1}
 
     def errors_at_steps(line: EngineLine, column: Column) -> str:
-        engine, rows = line.columns[column][-1]  # in the last method of a column, our code does most
+        engine, rows = line.columns[column][-1]  # the last method of a column has the largest part of our code
         in_cell = "" if (line.engine, column) in same_runs else describe_inner_runs(engine, line.scene, last)
         return "; ".join(filter(None, (_errors_at_steps(line, engine, rows, steps), in_cell)))
 

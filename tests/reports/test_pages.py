@@ -288,7 +288,7 @@ def some_answers(tasks: Iterable[Task], chance: random.Random) -> dict[Task, Ans
 def test_a_motion_that_is_not_finite_is_reported_in_its_line():
     cell = Motion(turning_round.TURNING_ROUND[0]).cell
     material = Material({}, {Motion(cell): still(Motion(cell))})
-    with pytest.raises(ZeroDivisionError):  # an exception in the code is raised
+    with pytest.raises(ZeroDivisionError):  # an exception in our code is not hidden
         observe(material, cell, "a step", lambda run: f"{1 / 0}")
     missing = Material({}, {Motion(cell): still(Motion(cell), lost=True)})
     [line] = observe(missing, cell, "a step", lambda run: "all is well")

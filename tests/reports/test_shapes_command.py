@@ -44,8 +44,8 @@ def test_a_ladders_shapes_are_cardans_circles_in_every_kind_of_file(tmp_path, ca
     space = np.array([[float(row["space_x"]), float(row["space_y"])] for row in rows])
     body = np.array([[float(row["body_x"]), float(row["body_y"])] for row in rows])
     assert len(rows) == 50
-    # The error of splines of degree 7 is 0.01**8 if poses are 0.01 rad apart. Rounding is larger, 1e-11 in a first
-    # derivative.
+    # The error of splines of degree 7 is 0.01**8 if poses are 0.01 rad apart. The error by rounding is larger; it is
+    # 1e-11 in a first derivative.
     np.testing.assert_allclose(np.linalg.norm(space, axis=-1), 1.0, rtol=0, atol=1e-9)
     np.testing.assert_allclose(np.linalg.norm(body, axis=-1), 0.5, rtol=0, atol=1e-9)
     layers = {line.dxf.layer: line for line in readfile(folder / "ladder_shapes.dxf").modelspace()}

@@ -129,7 +129,8 @@ def test_verdicts_by_hand(errors, verdict, points):
 
 
 def test_the_order_is_that_of_least_squares_with_how_far_the_furthest_slope_is_from_it():
-    _, order, points, spread, _, _ = fit([1e-1, 1e-2, 1e-3, 1e-4], [1e-2, 1e-3, 1e-4, 1e-6], 0.0)  # slopes 1, 1 and 2
+    # the three slopes are 1, 1 and 2
+    _, order, points, spread, _, _ = fit([1e-1, 1e-2, 1e-3, 1e-4], [1e-2, 1e-3, 1e-4, 1e-6], 0.0)
     assert (order, points, spread) == (pytest.approx(1.3), 4, pytest.approx(0.7))
 
 

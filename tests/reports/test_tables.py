@@ -222,7 +222,7 @@ def test_printed_tables_equal_the_golden_file(golden):
 
 
 def test_the_order_of_rows_changes_no_cell():
-    for rows in list(at_steps())[:-2]:  # in the last two sets, a cell with outcomes has the order of the rows
+    for rows in list(at_steps())[:-2]:  # the cells of the last two sets list outcomes in the order of the rows
         assert cell_of(rows[::-1]) == cell_of(rows)
 
 

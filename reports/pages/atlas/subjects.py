@@ -26,7 +26,7 @@ MIN_STEPS = 10  # number of steps of a run at the largest step
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """A map of outcomes over step and parameter. `subjects.toml` explains the other fields.
+    """A map of outcomes over step and parameter. `subjects.toml` explains the fields that are missing here.
 
     make: parameter value -> scene.
     frequency: scene -> frequency of the fastest motion [rad/s], which predicts the step of failure.

@@ -267,7 +267,7 @@ def missed(erratum: Erratum, pattern: str, between: str) -> str:
 
 
 def verdict(erratum: Erratum, values: Values, ruled: Sequence[Ruling]) -> str:
-    """Sentences on the errors of the printed and the right formula, by the derivative and by engines (`ruled`)."""
+    """Sentences that compare the printed and the right formula with the derivative and with engines (`ruled`)."""
     right = number(values.agreement)
     misses = f"The printed formula misses it by {number(values.miss)}, the right one by {right}."
     pattern = "the printed one misses their motion by {0} or more, the right one by {1} at most."

@@ -54,7 +54,7 @@ def printed_apart(name: str) -> str:
 
 @dataclass(frozen=True)
 class FaultScript(Task):
-    """A script that is run with the installed engine. The digest of its text is part of the task's key."""
+    """A script that is run with the installed engine. The task's key contains a digest of the script's text."""
 
     name: str
     digest: str

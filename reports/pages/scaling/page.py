@@ -165,7 +165,7 @@ def fitted(series: MethodSeries) -> str:
 FIXED_STEP = 5e-3  # s; at much larger steps, Euler steps in reduced coordinates fail with 200 links
 SMALL_SIZES = (1, 3, 10, 20)
 LARGE_SIZES = (50, 100)
-COSTLY_SIZES = (300, 1000)  # run for a few steps only, to measure their CPU time
+COSTLY_SIZES = (300, 1000)  # chains of these sizes are run for a few steps only, to measure the CPU time
 PENDULUM_SAMPLES = 5
 FEW_STEPS = 4
 MORE_STEPS = 40  # for cheap methods at COSTLY_SIZES, whose first step is slower than later steps

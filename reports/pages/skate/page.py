@@ -79,7 +79,7 @@ SKATE_SCENES = (ChaplyginSleigh(), SleighBackwards(), PinnedBody(), FreelyPinned
 SLEIGH_AHEAD = ChaplyginSleigh()
 
 BLADES = 7  # Blades drawn along a path.
-# Method that is drawn, because its error is visible -> (colour, dashes).
+# Methods with visible errors, with the colour and the dashes of their paths.
 DRAWN_PATHS: dict[str, tuple[str, Any]] = {
     "pymunk skate: centre's velocity zeroed": ("first", "--"),
     "pymunk skate: point's velocity zeroed": ("first", ":"),

@@ -1,1 +1,1 @@
-"""What changed in engines from release to release."""
+"""Changes of engines from release to release."""

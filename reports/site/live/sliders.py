@@ -78,7 +78,7 @@ class Look:
     """Additional elements of the drawing of a mechanism.
 
     ends: points of bodies [m]. curves: (name of a body or None for the ground, points of a line [m] in this frame).
-    axle: half the length [m] of an axle with two wheels, which is drawn for a skate. With 0 a blade is drawn.
+    axle: half the length [m] of an axle with two wheels, which is drawn for a skate. If it is 0, a blade is drawn.
     """
 
     ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
