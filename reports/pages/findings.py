@@ -36,7 +36,7 @@ from reports.write.unmeasured import UNKNOWN_MARK, UNMEASURED
 
 # Size of a picture in inches. In a browser the picture has the width of a telephone's screen, 360 pixels.
 PICTURE_WIDTH, PICTURE_HEIGHT = 3.75, 2.55
-# (dashes, mark, whether the mark is filled) of the lines in a picture. Lines may have the same colour.
+# Styles (dashes, mark, whether the mark is filled) of the lines in a picture. Lines may have the same colour.
 LINE_STYLES = ((":", "o", False), ("--", "s", True), ("-", "D", True), ("-.", "^", False))
 STEP_AXIS, CPU_AXIS, RELEASE_AXIS = "step [ms]", "CPU time [ms per simulated second]", "release"
 TENTH_OF_MS = 1e-4  # s

@@ -73,7 +73,7 @@ def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[
     }
 
 
-# (upper bound of the error, role of its colour). On light paper larger errors have darker colours.
+# Pairs (upper bound of the error, role of the colour). On light paper larger errors have darker colours.
 SHADES = ((1e-9, "exact"), (1e-6, "fine"), (1e-4, "good"), (1e-2, "fair"), (math.inf, "middling"))
 SHADE_NAMES = {
     "exact": "error below 1e-9",

@@ -30,7 +30,7 @@ NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # NUDGE_SHARE is the shift relative to a dis
 LAW_TOLERANCE = 1e-9  # The tolerance is a thousand times the rounding error with independent rows.
 PRECISION_MARGIN = 10.0  # Tolerance in units of the engine's precision.
 INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # The step is in units of the mechanism's time scale.
-Errors = Mapping[str, tuple[float, float]]  # (error, tolerance) by check.
+Errors = Mapping[str, tuple[float, float]]  # Check -> (error, tolerance).
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def difference(mechanism: Mechanism, found: Array, expected: Array, scales: tupl
 def force_difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
     """The largest relative difference of forces (..., rows). Torques are divided by the mechanism's length scale.
 
-    NaN stands for a force that the engine does not report, and is ignored.
+    A force of NaN is not reported by the engine, and is ignored.
     """
     reported = ~np.isnan(found)
     size = np.where(mechanism.is_angular, 1 / mechanism.length_scale, 1.0)

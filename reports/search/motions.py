@@ -64,8 +64,8 @@ def judge_motion(mechanism: Mechanism) -> Trajectory:
 
 
 def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """(error at the finest step, tolerance) for "motion" and "reactions", and for "estimate" if the run has an error
-    estimate.
+    """The error at the finest step and the tolerance, for "motion", "reactions" and, if the run has an error estimate,
+    "estimate".
 
     Raises Fault if a run diverges without a warning.
     """
@@ -247,7 +247,7 @@ class _Case:
         )
 
     def as_declared(self, run: Trajectory, parts: int) -> dict[str, tuple[float, float]]:
-        """(error, tolerance) by check, from a run of the judge with the regularisation that the engine declares at this
+        """Check -> (error, tolerance), from a run of the judge with the regularisation that the engine declares at this
         step.
 
         If the compliance depends on the step, its effect has the declared order only while the compliance is small. The

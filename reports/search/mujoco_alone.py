@@ -23,7 +23,7 @@ from reports.search.recipe import DEPENDENCE_LIMIT, MOTION_ROUNDING
 Array = NDArray[np.float64]
 Numbers = Any  # an array, real or complex
 
-# "gear" is a linear joint equality; "joint" and "tendon" equalities are quadratic.
+# The kind "gear" is a linear joint equality, and the kinds "joint" and "tendon" are quadratic.
 EQUALITY_KINDS = ("connect", "weld", "gear", "joint", "tendon")
 HINGED_KINDS = ("connect", "weld", "gear")
 RAW_BODIES, RAW_EQUALITIES = 9, 3

@@ -57,7 +57,7 @@ RELATIONS = (*CHANGES, *UNIT_CHANGES)
 
 
 def relation_errors(engine: Engine, recipe: Recipe, number: int) -> Errors | CheckSkipped:
-    """(error, tolerance) of the motion in another description, both relative to the motion."""
+    """The error of the motion in another description, and its tolerance, both relative to the motion."""
     mechanism = build(recipe)
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return CheckSkipped("rounding decides whether two shapes touch")
@@ -108,7 +108,7 @@ def _compare_runs(
     back: Callable[[Trajectory], State],
     stricter: Engine | None = None,
 ) -> tuple[float, float] | CheckSkipped:
-    """(error, tolerance) of the last states. `reports.search.law` defines the noise in the tolerance."""
+    """The error of the last states, and its tolerance. `reports.search.law` defines the noise in the tolerance."""
 
     def run(described: Mechanism) -> Trajectory:
         return engine.build(described, INSTANT_STEP * described.time_scale)(1, INSTANT_STEPS)

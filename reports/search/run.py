@@ -60,7 +60,8 @@ def run_search(
 ) -> tuple[list[CaseResult], Mapping[Shrink, Answer]]:
     """Results of `cases` cases of each subject, and reduced findings. Results and findings are stored in `folder`.
 
-    `seed`: None selects the first published seed. `kinds`: an empty sequence selects all kinds. `seconds`: time limit,
+    `seed`: the seed, or None for the first published seed. `kinds`: an empty sequence selects all kinds. `seconds`:
+    time limit,
     after which no task is started.
     """
     kinds = kinds or tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))

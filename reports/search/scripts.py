@@ -53,7 +53,7 @@ step"""
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A function in a script that steps one model. `read`: Python expression for the result."""
+    """A function in a script that steps one model. `read`: expression in Python for the result."""
 
     title: str
     lines: Sequence[str]
@@ -164,7 +164,8 @@ def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
 
 
 def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
-    """The script with these blocks. `engine`: None for MuJoCo alone. `turning`: lines that remove whole turns."""
+    """The script with these blocks. `engine`: the engine, or None for MuJoCo alone. `turning`: lines that remove whole
+    turns."""
     runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
     rows = "\n".join(
         f"    ({block.title!r}, run_{number}, {np.asarray(block.expected).tolist()!r}),"

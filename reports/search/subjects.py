@@ -105,7 +105,7 @@ def _run_oracles(oracles: Mapping[str, Callable[[], Errors | CheckSkipped]], eng
     """Run oracles. An exception gives the fault "raised" if code of the engine raised it, otherwise the fault
     OUR_ERROR.
 
-    `engine`: None for MuJoCo alone.
+    `engine`: the engine, or None for MuJoCo alone.
     """
     errors: dict[str, tuple[float, float]] = {}
     skipped: list[str] = []

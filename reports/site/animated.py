@@ -58,7 +58,8 @@ DECADES = 8  # largest number of decades of the error axis
 class Take(Look):
     """A picture of the exact motion of a scene and of the motions of several methods.
 
-    methods: (label, engine, steps between samples). samples: number of sampling intervals, or None for that of the
+    methods: triples (label, engine, steps between samples). samples: number of sampling intervals, or None for that of
+    the
     scene.
     """
 

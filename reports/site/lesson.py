@@ -65,7 +65,7 @@ class Part:
     heading: str
     text: str
     question: str
-    answers: tuple[tuple[str, bool], ...]  # (words, whether it is right)
+    answers: tuple[tuple[str, bool], ...]  # pairs (text of an answer, whether it is right)
     after: str
 
 

@@ -26,7 +26,7 @@ from reports.write.templates import template
 class RenderedExperiment:
     """The texts and tables of an experiment.
 
-    observations, grid: Markdown tables, which are empty without observations or rows.
+    observations, grid: tables in Markdown, which are empty without observations or rows.
     unrun: whether the experiment has cells or tasks of which none was run.
     """
 

@@ -24,7 +24,7 @@ TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
 # cost, the first method of the page is recommended. A page lists methods with our code last.
 EQUAL_COST_FACTOR = 1.25
 
-# (method, step [s]) -> the error that the method's declared regularisation causes, or NaN for an unknown error.
+# Function of (method, step [s]) that returns the error by the declared regularisation, or NaN if it is unknown.
 DeclaredError = Callable[[str, float], float]
 
 

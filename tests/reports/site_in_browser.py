@@ -1,4 +1,4 @@
-"""Fixtures with a site in Chromium, and functions that run its engines in the page and in Python;
+"""Fixtures with a site in Chromium, and functions that run engines in the page and in Python;
 `tests/tools/browser.sh` installs all."""
 
 from __future__ import annotations

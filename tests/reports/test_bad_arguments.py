@@ -67,7 +67,7 @@ def test_every_kind_of_argument_has_its_bounds(annotation, refused, taken):
 
 
 POINTS = ((0.0, 0.5), (1.0, 0.0))
-# (call with one free argument, name of this argument, a bad value).
+# Case -> (call with one free argument, name of this argument, a bad value).
 MISTAKES: dict[str, tuple[Any, str, Any]] = {
     "mass of zero": (lambda value: Body("b", value, 1.0, (0.0, 0.0, 0.0)), "mass", 0.0),
     "pose without an angle": (lambda value: Body("b", 1.0, 1.0, value), "pose", (0.0, 0.0)),

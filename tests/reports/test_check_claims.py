@@ -68,7 +68,8 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
 @pytest.mark.parametrize(
     ("rows", "advised", "tenth"),
     [
-        # (error, cost) of each setting; the first are the user's settings. `tenth` is the setting with a tenth of the
+        # Pairs (error, cost) of the settings; the user's settings come first. `tenth` is the setting with a tenth of
+        # the
         # advised error.
         ([(1e-5, 1.0), (1e-6, 2.0)], 0, 1),
         ([(1e-5, 1.0), (2e-5, 0.5)], 1, None),

@@ -52,7 +52,7 @@ def own_errors(poses: NDArray[Any], truth: NDArray[Any]) -> tuple[float, float]:
 
 
 def of_mujoco(path: Path, t: NDArray[Any]) -> tuple[float, float, int]:
-    """(angle error, position error, degrees of freedom) of the user's model at times t."""
+    """The angle error, the position error and the degrees of freedom of the user's model at times t."""
     model = mujoco.MjModel.from_xml_path(str(path))
 
     def begin() -> Any:
@@ -108,7 +108,7 @@ def checked(path: Path, duration: float) -> CheckResult:
     )
 
 
-# (name, duration [s], degrees of freedom, expected length scale [m] or None).
+# Models as (name, duration [s], degrees of freedom, expected length scale [m] or None).
 MUJOCO_MODELS = [
     ("fast_motor", 1.0, 1, None),
     ("jansen_leg", 1.0, 1, None),

@@ -107,7 +107,7 @@ LOST = replace(JUDGE, second=dict.fromkeys(NAMES, math.inf), fourth=dict.fromkey
 WILD = replace(JUDGE, second=dict.fromkeys(NAMES, 1e3), fourth=dict.fromkeys(NAMES, 1e3))
 PRESCRIBED = replace(JUDGE, prescribed=True, lag=dict.fromkeys(NAMES, 2.0))
 Given = tuple[Prediction, ConvergenceOrder | NotDeclared, Regularisation | None, list[Measurement]]
-BOUNDS: dict[str, tuple[Given, str, float]] = {  # (arguments of `theory`, quantity, bound of its error)
+BOUNDS: dict[str, tuple[Given, str, float]] = {  # case -> (arguments of `theory`, quantity, bound of its error)
     "two coarser steps bound by the promised order": (
         (JUDGE, ConvergenceOrder(2), None, coarser(at1=1e-7, at3=1e-8)), "angle", ROOM_OWN * 1e-9 + 1e-11),
     "one coarser step may be luck": (

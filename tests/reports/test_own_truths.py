@@ -62,8 +62,8 @@ def servo(t, gear, k=3.0, d=0.4, u=0.3):
 MOTOR = '<motor joint="a" gear="2" {0}/>'
 RANGE = MOTOR.format('ctrlrange="-1 1.5" ctrllimited="true"')
 BRAKE = '<velocity name="brake" joint="a" kv="1" forcerange="-1.5 1.5"/>'
-# (actuators, flag, control, initial rate [rad/s], angle of the wheel [rad] as a function of time or constant torque [N
-# m])
+# Case -> (actuators, flag, control, initial rate [rad/s], expected motion). The motion is an angle [rad] as a function
+# of time, or a constant torque [N m].
 TURNS: dict[str, tuple[str, str, float, float, Any]] = {
     "servo": ('<position joint="a" kp="3" kv=".4" gear="2"/>', "", 0.3, 0.0, lambda t: servo(t, 2.0)),
     "servo the other way": ('<position joint="a" kp="3" kv=".4" gear="-.5"/>', "", 0.3, 0.0, lambda t: servo(t, -0.5)),

@@ -93,7 +93,7 @@ def test_a_cell_whose_worker_was_killed_is_tried_once_more_in_a_new_worker(tmp_p
         for row in run_cells(Cell(Disc(), RoughToy(name, folder=str(tmp_path / name)), 1) for name in names)
     }
     assert {row.outcome for row in rows.values()} == {Outcome.FINISHED}
-    # A crash is reported even if it does not repeat, since the engine causes it; SIGKILL comes from outside.
+    # A crash is reported even if it does not repeat, since the engine causes it. A SIGKILL comes from outside.
     crash = "the first try aborted with signal 11 (SIGSEGV), the second went through"
     assert [rows[name].sentence for name in names] == ["", crash]
     # If one item has damaged native memory, the next item must not crash.

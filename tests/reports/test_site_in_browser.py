@@ -1,4 +1,4 @@
-"""Tests of the site in Chromium; `tests/tools/browser.sh` installs what they need."""
+"""Tests of the site in Chromium, which `tests/tools/browser.sh` installs."""
 
 from __future__ import annotations
 

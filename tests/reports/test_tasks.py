@@ -124,7 +124,8 @@ def answers(page: Page) -> dict[Task, Answer]:
     return {task: answer_to(task) for task in all_tasks(page)}
 
 
-@pytest.mark.parametrize("name", ["centrodes", "scaling"])  # "centrodes" has tasks, "scaling" has only rows
+# the page "centrodes" has tasks, and "scaling" has only rows
+@pytest.mark.parametrize("name", ["centrodes", "scaling"])
 def test_a_page_is_written_without_engines(name, monkeypatch):
     [page] = [page for page in PAGES if page.name == name]
     material = Material({}, answers(page))

@@ -38,7 +38,7 @@ class StoredColumn:
     subject: the map's name.
     longest: the largest step [s].
     counts: the number of steps of each run.
-    outcomes: `Outcome.letter` or NOT_RUN for each step.
+    outcomes: for each step `Outcome.letter` or NOT_RUN.
     errors: the decimal logarithm of the angle error [rad], or NaN for cells that were not run or did not finish.
     gives: the step at which a joint tears, from `tearing_step` [s].
     left: the remaining fraction of the slowest mode, from `residual_of_sweeps`.

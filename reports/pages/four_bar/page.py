@@ -1,4 +1,4 @@
-"""The page of the four-bar: its scenes, its experiments, and the nine configurations of Fig. 18.66."""
+"""The page of the four-bar with its scenes, its experiments, and the nine configurations of figure 18.66."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The page of published problems: Andrews' mechanism, and three benchmarks.
+"""The page of published problems, which are Andrews' mechanism and three benchmarks.
 
-The published numbers of Andrews' mechanism are copied from the Test set for initial value problem solvers, release 2.4,
-II-17, by F. Mazzia and C. Magherini.
+The published numbers of Andrews' mechanism are copied from the Test set for initial value problem solvers by Mazzia and
+Magherini, release 2.4, II-17.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An engine for LongPendulums: RK4 with the reference's banded solver for the joint forces of a chain."""
+"""An engine for LongPendulums, RK4 with the reference's banded solver for the joint forces of a chain."""
 
 from __future__ import annotations
 

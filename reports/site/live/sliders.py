@@ -17,7 +17,7 @@ Point = tuple[float, float]
 NAMES: dict[Name, str] = {"munk": "pymunk", "mujoco": "MuJoCo"}
 MOST = 125  # limit of the number of slider positions of a scene, since the page loads data for each position
 SHIPPED, DOCUMENTED = "as shipped", "documented settings"
-# Settings of the engines as pairs (value, label). None means the value of the chosen method.
+# Settings of the engines as pairs (value, label). The value None stands for that of the chosen method.
 OWN = (None, "the method's value")
 INTEGRATORS = (OWN, (0, "Euler"), (3, "implicitfast"), (1, "RK4"))
 TIME_CONSTANTS = (OWN, *((value, f"{1000 * value:g} ms") for value in (0.002, 0.005, 0.01, 0.02, 0.05)))
@@ -77,8 +77,10 @@ class Slider:
 class Look:
     """Additional elements of the drawing of a mechanism.
 
-    ends: points of bodies [m]. curves: (name of a body or None for the ground, points of a line [m] in this frame).
-    axle: half the length [m] of an axle with two wheels, which is drawn for a skate. If it is 0, a blade is drawn.
+    ends: points of bodies [m]. curves: pairs of a body's name, or None for the ground, and points of a line [m] in this
+    frame.
+    axle: half the length [m] of an axle with two wheels, which is drawn for a skate. An axle of length 0 is drawn as a
+    blade.
     """
 
     ends: Mapping[str, tuple[Point, ...]] = field(default_factory=dict)
