@@ -62,7 +62,7 @@ class Capability:
 
     @property
     def absent(self) -> frozenset[type]:
-        """The classes that the engine, by its documentation, does not have."""
+        """Classes of elements that the engine does not have by its documentation."""
         return frozenset(kind for kind, lack in self.lacks.items() if lack.documentation)
 
     def require(self, mechanism: Mechanism) -> None:

@@ -211,7 +211,7 @@ class Engine(ABC):
 
     @property
     def absent_elements(self) -> frozenset[type]:
-        """The classes of joints and force elements that the engine, by its documentation, does not have."""
+        """Classes of joints and force elements that the engine does not have by its documentation."""
         return self.capability.absent if self.capability else frozenset()
 
     @property
@@ -270,5 +270,4 @@ class Engine(ABC):
 
 
 def method_name(engine: Engine) -> str:
-    """The name of an engine's variant in rows, tables and messages."""
     return f"{engine.name} {engine.variant}"

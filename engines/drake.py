@@ -105,7 +105,6 @@ class Drake(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s]."""
         step, evaluations = DRAKE_STEP_COSTS[self.scheme]
         return step * over_three(mechanism) + (evaluations * TREE_FORCES_COST if mechanism.forces else 0.0)
 

@@ -1,4 +1,4 @@
-"""A mechanism as a system of Exudyn, and its run."""
+"""A mechanism as a system of Exudyn, and the run of this system."""
 
 from __future__ import annotations
 

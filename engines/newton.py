@@ -98,7 +98,6 @@ class Newton(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s]."""
         step = NEWTON_STEP_COSTS[self.backend if self.solver == "kamino" else "xpbd"]
         return step * over_three(mechanism) + (NEWTON_FORCES_COST if mechanism.forces else 0.0)
 

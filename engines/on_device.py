@@ -58,23 +58,19 @@ class MuJoCoOnDevice(ExtraEngine):
     settings: MuJoCo = field(default_factory=lambda: C_DEFAULT)
 
     def order_without_loops(self, mechanism: Mechanism) -> ConvergenceOrder:
-        """The integrator's order."""
         if turns_steadily(mechanism) or is_prescribed(mechanism):
             return ConvergenceOrder(EXACT)
         return ConvergenceOrder(4 if self.settings.integrator == "RK4" else 1, gap=EXACT, slip=EXACT)
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s], without compilation."""
         return self.evaluation_cost * (4 if self.settings.integrator == "RK4" else 1) * over_three(mechanism)
 
     @validated
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
-        """As in MuJoCo."""
         return self.settings.enforcement(joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """The regularisation by MuJoCo with these settings."""
         return self.settings.regularisation(mechanism, dt)
 
     def compiled(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> MuJoCoModel:
@@ -90,5 +86,4 @@ class MuJoCoOnDevice(ExtraEngine):
 
 
 def size_of(model: MuJoCoModel, solver_rows: int) -> Size:
-    """The size of a compiled model."""
     return Size(model.compiled.nbody - 1, model.compiled.nq, model.rows + len(model.driven), solver_rows)

@@ -105,7 +105,7 @@ class SingleRun(OneShot):
 
 
 class EngineModel(Protocol):
-    """A model of an engine for steps of a fixed length."""
+    """A model that an adapter builds for steps of dt."""
 
     @property
     def size(self) -> Size: ...
@@ -138,7 +138,6 @@ class ExtraEngine(Engine, Valid):
         return f"{self.name} needs the shared library {name}, which is not on this system: apt-get install {package}"
 
     def require(self) -> None:
-        """Raise Unsupported if the package is missing."""
         if self.missing:
             raise Unsupported(self.missing)
 

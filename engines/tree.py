@@ -60,7 +60,6 @@ class Link:
 
     @property
     def columns(self) -> range:
-        """The indices of the body's tree coordinates."""
         return range(self.column, self.column + self.slides + self.turns)
 
     @property
@@ -114,7 +113,7 @@ class Tree:
 
     @property
     def closed(self) -> bool:
-        """Whether any joint needs loop-closing rows; see `closes_by`."""
+        """Whether any joint needs loop-closing rows."""
         return bool(self._looping)
 
     def turning(self, first: str | None, second: str | None) -> dict[int, float]:

@@ -11,7 +11,6 @@ from reference.mechanism import Mechanism
 
 
 def _forwarded(member: str) -> Any:
-    """A property of the inner engine."""
     return property(lambda wrapper: getattr(wrapper.engine, member))
 
 

@@ -254,7 +254,6 @@ class BrowserEngine(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s]."""
         return STEP_COST * over_three(mechanism)
 
     def model(self, mechanism: Mechanism, dt: float) -> BrowserWorld:

@@ -1,22 +1,22 @@
-"""The engine pymunk with its default settings, with better settings, and with extrapolation.
+"""The engine pymunk with default settings, with better settings, and with extrapolation.
 
-A step of Chipmunk (cpSpaceStep.c) begins with a drift: the positions change by v dt with the old velocities v. At the
-new positions a kick adds the effect of the forces to the velocities. Then every joint corrects the velocities in turn,
-`iterations` times. The iterations start from the impulses of the previous step. After n steps the velocities contain
-the full kick at the positions p_n. They are read in one of two ways:
+A step of Chipmunk (cpSpaceStep.c) begins with a drift, which changes the positions by v dt with the old velocities v.
+At the new positions a kick adds the effect of the forces to the velocities. Then the joints correct the velocities one
+after the other, `iterations` times. The iterations start from the impulses of the previous step. After n steps the
+velocities contain the full kick at the positions p_n. There are two ways to read the velocities:
 
-- `leapfrog` False is how users read them: `body.velocity` is the velocity at t_n. The first drift uses the velocity at
-  0 and not at dt/2. Half a kick is missing, so errors are of first order. From rest, the positions are late by dt/2,
-  and only the velocities are of second order, since the kick of the last step compensates the delay.
-- `leapfrog` True begins with a kick of half a step without drift. The engine then has v at t_n + dt/2, and the velocity
-  at t_n is the mean of the velocities half a step before and after. Errors are of second order.
+- `leapfrog` False: `body.velocity` is the velocity at t_n, as users read it. The first drift uses the velocity at t = 0
+  instead of dt/2. Half a kick is missing, so errors have order 1. After a start from rest, positions have a delay of
+  dt/2. Velocities have order 2, since the kick of the last step compensates the delay.
+- `leapfrog` True: the run begins with a kick of half a step without drift. The engine then has v at t_n + dt/2. The
+  velocity at t_n is the mean of the velocities at t_n - dt/2 and t_n + dt/2. Errors have order 2.
 
-The force of step n is evaluated at p_n. In both cases, the change of velocity over step n divided by dt is therefore
-the acceleration at t_n. `Mechanism.reaction` computes signed reactions from it, since `constraint.impulse` is only a
-magnitude.
+The force of step n is evaluated at p_n. Therefore the change of velocity over step n divided by dt is always the
+acceleration at t_n. `Mechanism.reaction` computes signed reactions from these accelerations, since `constraint.impulse`
+is only a magnitude.
 
-A joint corrects the fraction 1 - error_bias ** dt of its gap in a step. With the default error_bias the fraction is
-about 6.3 dt, and a gap of the order of dt remains. With error_bias 0 a gap of the order of dt ** 2 remains.
+In a step a joint corrects the fraction 1 - error_bias ** dt of a gap. With the default error_bias the fraction is about
+6.3 dt, and the remaining gap has order 1. With error_bias 0 the remaining gap has order 2.
 """
 
 from __future__ import annotations
@@ -35,9 +35,10 @@ from reference.mechanism import Mechanism
 
 @validated
 def bare_loop(engine: Engine, mechanism: Mechanism, dt: Positive, steps: Count) -> float:
-    """CPU time [s] of `steps` steps of dt [s] without recording, a lower bound of the `stepping` of a run.
+    """CPU time [s] of `steps` steps of dt [s] without recording, which is a lower bound of a run's `stepping`.
 
-    An extrapolation makes `level` times as many steps of dt / level at each level. Raises ValueError for other engines.
+    An extrapolation makes `level` times as many steps of dt / level for each level. Raises ValueError for other
+    engines.
     """
     if isinstance(engine, Extended):
         engine = engine.chosen(mechanism)

@@ -1,22 +1,23 @@
 """The convergence of pymunk's Gauss-Seidel iterations, and the stability of its steps.
 
-The joints solve A x = b with A = J M^-1 J^T, one joint after the other. An iteration multiplies the residual of the
-slowest mode by rho, the spectral radius of S = 1 - L^-1 A, where L is the lower block triangle of A. rho is near 1 for
-long chains (1 - rho = pi^2/(4 N^2) for N equal links) and for heavy bodies that hang on light ones (1 - rho = 1/100 for
-a mass ratio of 100).
+The iterations solve A x = b with A = J M^-1 J^T, one joint after the other. An iteration multiplies the residual of the
+slowest mode by rho, the spectral radius of S = 1 - L^-1 A, where L is the lower block triangle of A. For long chains
+rho is near 1 (1 - rho = pi^2/(4 N^2) for N equal links). For heavy bodies that hang on light bodies rho is also near 1
+(1 - rho = 1/100 for a mass ratio of 100).
 
-A step starts from the impulses of the previous step, including those that corrected a gap. Let R = S^k after k
-iterations. Let B be the diagonal matrix with 1 for each row that corrects the fraction gamma of its gap. A step of
-length 1 maps the velocities u, impulses l and gaps g of the rows to
+A step starts from the impulses of the previous step, including impulses that corrected a gap. Let R = S^k for k
+iterations. The diagonal matrix B has 1 for each row that corrects the fraction gamma of its gap, and otherwise 0. A
+step of length 1 maps the velocities u, impulses l and gaps g of the rows to
 
     g' = g + u,   l' = R l - (1 - R) A^-1 (u + gamma B g'),   u' = u + A l'
 
-`step_spectral_radius` is the spectral radius of this map. If B = 1, the modes decouple, and a mode with the residual
-r = rho^k is stable up to gamma = (1 - r)/r. A step may then correct the whole gap if r < 1/2. Three or more joints can
-have complex modes, with r = mu^3 / (3 mu^2 - 3 mu + 1) for an eigenvalue mu of the map. The stability limit is
-mu = exp(i phi) with phi from pi/3 to pi. Along it, |r| falls from 1/2 (argument 0) to 1/7 (argument pi). A complex mode
-is replaced by the real mode that needs as many iterations. If B is not 1 (a motor holds no angle, a blade has no gap),
-k is increased until the map with 2 R in place of R is stable. The residual is then half of the stable one.
+`step_spectral_radius` is the spectral radius of this map. If B = 1, the modes decouple, and a mode with the residual r
+= rho^k is stable up to gamma = (1 - r)/r. A step may then correct the whole gap if r < 1/2. Three or more joints can
+have complex modes, with r = mu^3 / (3 mu^2 - 3 mu + 1) for an eigenvalue mu of the map. The stability limit is mu =
+exp(i phi) with phi from pi/3 to pi. From pi/3 to pi, |r| decreases from 1/2 (argument 0) to 1/7 (argument pi). A
+complex mode is replaced by a real mode that needs as many iterations. If B is not 1 (a motor keeps no angle, a blade
+has no gap), k is increased until the map with 2 R in place of R is stable. The residual is then half of the stability
+limit.
 """
 
 from __future__ import annotations
@@ -40,56 +41,55 @@ from reference.validators import Rule
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]  # eigenvalues of S
 
-# Residual of the slowest mode after the iterations of a step. It is half of the stability limit, since rho changes with
-# the pose.
+# Residual of the slowest mode after a step. It is half of the stability limit, since rho changes with the pose.
 RESIDUAL = 0.25
 MIN_ITERATIONS = 5
-# Number of rows up to which all eigenvalues are computed. For more rows only the smallest is, unless A is singular.
+# Largest number of rows for which all eigenvalues are computed. For more rows only the smallest eigenvalue is computed,
+# unless A is singular.
 DENSE = 100
 # Largest product of iterations and joints in one of the few start-up steps.
 STARTUP_WORK = 1_000_000
 LARGEST_FACTOR = 1 - 1e-12
-# A step is unstable if its spectral radius exceeds 1 by more than this, which is above the rounding of eigenvalues.
+# A step is unstable if its spectral radius exceeds 1 + UNSTABLE, which is above the rounding of eigenvalues.
 UNSTABLE = 1e-6
 # Complex residuals at the stability limit.
 _LIMIT = 1 / np.polyval([1, -3, 3, 0], np.exp(-1j * np.linspace(np.pi / 3, np.pi, 64)))
-# The iterations must multiply the mode by exp(-_EXPONENT) to reach half of the stable residual.
+# The iterations must multiply a mode by exp(-_EXPONENT), so that its residual is half of the stability limit.
 _EXPONENT = -np.log(np.abs(_LIMIT) * RESIDUAL / 0.5)
-# The argument of the mode per unit of this exponent [rad].
+# Argument of a mode [rad] per unit of the exponent.
 _ARGUMENT = np.abs(np.angle(_LIMIT)) / _EXPONENT
 
 Factor = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1")]
 
 
 class _System(NamedTuple):
-    """The rows that impulses enforce, at one or more poses. Rows of prescribed motions are left out."""
+    """The rows that impulses enforce, at one or more poses, without rows of prescribed motions."""
 
     matrix: Array  # A (..., rows, rows).
     starts: list[int]  # First row of the block of each pymunk constraint.
     jacobian: Array  # (..., rows, 3 bodies), zero in prescribed coordinates.
-    indices: list[int]  # Indices of these rows among the rows of the mechanism.
+    indices: list[int]  # Indices of these rows in the mechanism.
 
 
 @by_identity()
 @validated
 def convergence_factor(mechanism: Mechanism) -> float:
-    """rho at t = 0; it is 0 if no joint acts on another one. Modes of dependent rows are left out."""
+    """rho at t = 0 without modes of dependent rows; 0 if no joint acts on another joint."""
     return convergence_factor_at(mechanism, mechanism.pose)
 
 
 @validated
 def convergence_factor_at(mechanism: Mechanism, pose: Numbers) -> float:
-    """rho at a pose (bodies, 3) [m, m, rad]."""
     try:
         rho = _spectral_radius(_system(mechanism, pose), mechanism.length_scale)
-    except np.linalg.LinAlgError:  # mass ratios beyond floating point
+    except np.linalg.LinAlgError:  # extreme mass ratios
         rho = 0.0
     return min(max(rho, 0.0), LARGEST_FACTOR)
 
 
 @validated
 def convergence_factors(mechanism: Mechanism, poses: Numbers) -> Array:
-    """rho (poses,) at poses (poses, bodies, 3), vectorised, for at most DENSE rows.
+    """rho (poses,) at several poses (poses, bodies, 3), for at most DENSE rows.
 
     Raises LinAlgError if a block is singular.
     """
@@ -102,7 +102,7 @@ def convergence_factors(mechanism: Mechanism, poses: Numbers) -> Array:
 
 
 def equivalent_real(modes: Modes) -> Array:
-    """The real factors that need as many iterations as the given factors, which may be complex."""
+    """Real factors that need as many iterations as `modes`, which may be complex."""
     with np.errstate(divide="ignore", invalid="ignore"):
         decay = -np.log(np.abs(modes))
         needed = np.interp(np.abs(np.angle(modes)) / decay, _ARGUMENT, _EXPONENT)
@@ -111,7 +111,7 @@ def equivalent_real(modes: Modes) -> Array:
 
 @validated
 def corrects_gap(mechanism: Mechanism, rolls_are_contacts: bool = False) -> Array:
-    """A mask (rows,), 1 for rows that correct their gap, else 0. A contact is taken to correct no gap."""
+    """A mask (rows,) with 1 for rows that correct gaps, and otherwise 0. Contacts count as rows that correct no gap."""
     uncorrected = (Drive, Skate, Roll) if rolls_are_contacts else (Drive, Skate)
     joints = [joint for joint in mechanism.joints for _ in range(joint.size)]
     return np.array([float(not isinstance(joint, uncorrected)) for joint in joints])
@@ -121,17 +121,17 @@ def corrects_gap(mechanism: Mechanism, rolls_are_contacts: bool = False) -> Arra
 def step_spectral_radius(
     mechanism: Mechanism, pose: Numbers, iterations: Count, corrected: Numbers, safety: Positive = 1.0
 ) -> float:
-    """The spectral radius of the map of a step. It is at least 1, since a gap that is not corrected remains.
+    """The spectral radius of the map of a step, which is at least 1, since an uncorrected gap remains.
 
-    `corrected` (rows,): the fraction of its gap that each row corrects in a step. `safety`: factor on the residual R.
-    The radius is infinite if the eigenvalues cannot be computed, as for extreme mass ratios.
+    `corrected` (rows,): fraction of the gap that a row corrects in a step. `safety`: factor on the residual R. The
+    radius is infinite if the eigenvalues cannot be computed, for example for extreme mass ratios.
     """
     system = _system(mechanism, pose)
     matrix = system.matrix
     count = int(ranks(system.jacobian, np.asarray(mechanism.length_scale)))
     if not count:
         return 1.0
-    size = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))  # makes rows of different units comparable
+    size = np.sqrt(np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0))  # rows have different units
     system = system._replace(matrix=matrix / np.outer(size, size))
     eigenvalues, vectors = (part[..., -count:] for part in np.linalg.eigh(system.matrix))
     iteration = np.eye(len(matrix)) - np.linalg.pinv(_lower(system)) @ system.matrix
@@ -153,8 +153,8 @@ def step_spectral_radius(
 def stable_factor(mechanism: Mechanism, poses: Numbers, rho: Factor, rolls_are_contacts: bool = False) -> float:
     """`rho`, or a larger factor for which `iterations_for` gives enough iterations for stability at all `poses`.
 
-    The factor is larger than `rho` only if some rows correct no gap. The result is LARGEST_FACTOR if it needs more than
-    STARTUP_WORK iterations.
+    A larger factor is needed only if some rows correct no gap. The result is LARGEST_FACTOR if stability needs more
+    than STARTUP_WORK iterations.
     """
     corrected, needed = corrects_gap(mechanism, rolls_are_contacts), iterations_for(rho)
     if corrected.all() or needed > STARTUP_WORK:
@@ -189,7 +189,7 @@ def _spectral_radius(system: _System, length: float) -> float:
 def _mode_factors(change: NDArray[np.floating[Any]], jacobian: Array, length: float) -> Modes:
     """The eigenvalues (..., rows) of S from `change` = L^-1 A (..., rows, rows), with 0 for modes of dependent rows.
 
-    Dependent rows give zero eigenvalues of A. Extreme mass ratios give eigenvalues near zero too, so the rank of the
+    Dependent rows cause zero eigenvalues of A. Extreme mass ratios also cause eigenvalues near zero, so the rank of the
     Jacobian determines the number of dependent rows.
     """
     eigenvalues = np.linalg.eigvals(change).astype(np.complex128)
@@ -228,7 +228,7 @@ def _system(mechanism: Mechanism, pose: Array) -> _System:
 
 
 def _block_sizes(joint: Joint) -> tuple[int, ...]:
-    """The number of rows in each pymunk constraint of a joint. A weld is a pivot and a gear."""
+    """The numbers of rows of a joint's pymunk constraints; a weld is a pivot and a gear."""
     return (2, 1) if isinstance(joint, Weld) else (joint.size,)
 
 

@@ -1,8 +1,8 @@
-"""The properties that pymunk declares: convergence orders, the enforcement of joints, and the law of a step.
+"""Declarations of pymunk: convergence orders, enforcement of joints, and the law of a step.
 
-The engine drifts before it solves, so the law uses the constraint rows at the pose after the drift. A joint corrects a
-fraction of its gap. Of all velocities that satisfy the rows, the law takes those with the smallest mass-weighted
-distance from the velocities without joints. It holds for converged iterations, and `instants` makes that many.
+A step drifts before it solves, so the law uses the constraint rows at the pose after the drift. A joint corrects a
+fraction of its gap. The law gives the velocities that satisfy the rows and have the smallest mass-weighted distance
+from the velocities without joints. It is valid for converged iterations, so `instants` makes enough iterations.
 """
 
 from __future__ import annotations
@@ -42,38 +42,39 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-GROOVE_LAW = "as its groove pushes"  # the name of the check by the law of Chipmunk's groove joint
+GROOVE_LAW = "as its groove pushes"  # name of the check by the law of Chipmunk's groove joint
 LAW_ITERATION_LIMIT = 20_000
 
 Kind = Literal[
     "contact", "set velocity", "single skate", "skate", "damper", "prescribed", "steady", "at rest", "moving"
 ]
 
-# Velocities are read at the ends of steps, so all errors are of first order.
+# Velocities are read at the ends of steps, so all errors have order 1.
 FIRST_ORDER = ConvergenceOrder(1, differences=1)
-# A step corrects the whole gap, so only the gap of one drift remains.
+# A step corrects the whole gap, so the remaining gap is that of a single drift.
 WHOLE_GAP_ORDER = ConvergenceOrder(1, gap=2, differences=1)
 # The iterations solve a single row at the pose after the drift exactly, and a skate has no gap.
 SINGLE_ROW = ConvergenceOrder(1, gap=2, slip=EXACT, differences=1)
 # The initial half kick makes every step symmetric in time.
 SYMMETRIC_ORDER = ConvergenceOrder(2, differences=1)
-# The three orders are for steps that correct a fraction of a gap, for steps that correct all of it, and for a leapfrog.
+# Orders for steps that correct a fraction of a gap, for steps that correct the whole gap, and for a leapfrog.
 ORDERS: Mapping[Kind, tuple[ConvergenceOrder, ConvergenceOrder, ConvergenceOrder]] = {
     "contact": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),
     "set velocity": (FIRST_ORDER, FIRST_ORDER, FIRST_ORDER),
     "single skate": (SINGLE_ROW, SINGLE_ROW, SINGLE_ROW),
-    # A row that holds at the end of the step is of first order, also in a leapfrog.
+    # A row at the end of a step causes errors of order 1, also in a leapfrog.
     "skate": (FIRST_ORDER, WHOLE_GAP_ORDER, WHOLE_GAP_ORDER),
     "damper": (FIRST_ORDER, WHOLE_GAP_ORDER, WHOLE_GAP_ORDER),
-    # No kick changes a prescribed motion, so the error of a pose is its gap.
+    # No kick changes a prescribed motion, so the errors of poses are the gaps.
     "prescribed": (
         FIRST_ORDER,
         ConvergenceOrder(2, rate=1, slip=1, energy=1, reaction=1, differences=1),
         SYMMETRIC_ORDER,
     ),
-    # Only the force of the pin acts. Its kick is perpendicular to the path and keeps the energy.
+    # Only the pin exerts a force, and its kick is perpendicular to the path. Therefore the energy is constant.
     "steady": (FIRST_ORDER, ConvergenceOrder(2, rate=1, slip=1, reaction=1, differences=1), SYMMETRIC_ORDER),
-    # Without the half kick the motion is late by dt/2. The kick of the last step compensates this in the velocities.
+    # Without the half kick the motion has a delay of dt/2. For velocities, the kick of the last step compensates the
+    # delay.
     "at rest": (FIRST_ORDER, ConvergenceOrder(1, rate=2, gap=2, slip=1, differences=1), SYMMETRIC_ORDER),
     "moving": (FIRST_ORDER, WHOLE_GAP_ORDER, SYMMETRIC_ORDER),
 }
@@ -114,8 +115,8 @@ def _kind(engine: Pymunk, mechanism: Mechanism) -> Kind:
 def _is_unstable(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
     """Whether impulses grow from step to step in the limit of short steps.
 
-    In this limit a step corrects the whole gap (error_bias 0) or none of it. Returns False for more than DENSE rows,
-    for which it is not computed.
+    In this limit a step corrects the whole gap (error_bias 0) or no part of it. The result is False for more than DENSE
+    rows, for which stability is not computed.
     """
     if mechanism.row_count > DENSE:
         return False
@@ -124,7 +125,7 @@ def _is_unstable(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
 
 
 def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforcement:
-    """Who enforces a joint. The engine shares the work with our code for joints that are placed before every step."""
+    """The enforcement of a joint, which is "engine, our rows" if our code places the joint before every step."""
     match joint:
         case Slot() if engine.slot == "exact" and _is_link(joint, mechanism):
             return "engine, our rows"
@@ -139,12 +140,12 @@ def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforceme
 
 
 def _is_off_centre(joint: Joint) -> bool:
-    """Whether a force at the blade of a skate turns its body by more than rounding."""
+    """Whether a force at the blade of a skate turns the body by more than rounding."""
     return isinstance(joint, Skate) and abs(along_blade(joint)) > 1e-12 * math.hypot(*joint.second_point)
 
 
 def _is_link(joint: Joint, mechanism: Mechanism) -> bool:
-    """Whether the construction "exact" of a slot is a `MovedPinJoint`, since a groove would not be exact."""
+    """Whether the construction "exact" of a slot is a `MovedPinJoint`, since a groove would be wrong."""
     if not isinstance(joint, Slot):
         return False
     cranks, turned = find_cranks(mechanism), find_turned(mechanism)
@@ -157,7 +158,7 @@ def _is_link(joint: Joint, mechanism: Mechanism) -> bool:
 def instants(
     engine: Pymunk, mechanism: Mechanism, dt: float, steps: int, built: Mechanism
 ) -> tuple[Instant, ...] | NotDeclared:
-    """Velocities after each of the first `steps` steps, one at least; see `engines.Engine.instants`."""
+    """Velocities after each of the first `steps` steps, at least one; see `engines.Engine.instants`."""
     has_skate, has_roll = (any(isinstance(joint, kind) for joint in mechanism.joints) for kind in (Skate, Roll))
     if (has_roll and engine.roll != "pivot") or (has_skate and engine.skate != "groove"):
         return NotDeclared("the law of a step covers joints only: no contacts, and no velocities that our code sets")
@@ -184,13 +185,13 @@ def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
 def _converged(
     engine: Pymunk, mechanism: Mechanism, dt: float, steps: int, built: Mechanism
 ) -> tuple[Model, Recording] | NotDeclared:
-    """The recording of the first steps. They are repeated until the iterations converge at all of their poses."""
+    """A recording of the first steps, with enough iterations to converge at all recorded poses."""
     rho = convergence_factor(mechanism)
     while True:
         iterations = math.ceil(math.log(CONVERGED_RESIDUAL) / math.log(rho)) + 5 if rho > 0 else 5
         if iterations > LAW_ITERATION_LIMIT:
             return NotDeclared(f"an iteration leaves {rho:.6f} of the slowest mode, so the iterations do not converge")
-        if engine.slot == "groove":  # the convergence factor does not describe the impulses of a groove joint
+        if engine.slot == "groove":  # the convergence factor is not valid for groove joints
             iterations = LAW_ITERATION_LIMIT
         model = engine.model_with(built, dt, replace(engine.plan(built, 0.0), iterations=iterations))
         recording = record(model, dt, steps, 1, raw=engine.leapfrog)
@@ -211,11 +212,11 @@ def _law(
 ) -> tuple[Array, Array]:
     """The velocities (bodies, 3) after a step according to the law, and the velocities without joints.
 
-    `with_grooves`: slots are groove joints of Chipmunk. Such a joint solves for both directions at the anchor and keeps
-    the component along the normal n. The product of n^T K^-1 and the relative velocity at the anchor becomes zero,
-    where K is the inverse mass matrix there.
+    `with_grooves`: slots are groove joints of Chipmunk. A groove joint solves for both directions at the anchor and
+    keeps the component along the normal n. With the inverse mass matrix K at the anchor, n^T K^-1 times the relative
+    velocity at the anchor becomes zero.
     """
-    # In pymunk springs are constraints too, but their error_bias has no effect.
+    # In pymunk, springs are also constraints, but their error_bias has no effect.
     joints = [constraint for constraint in model.space.constraints if type(constraint) in CONSTRAINT_ROWS]
     bias = min((constraint.error_bias for constraint in joints), default=0.0)
     corrected = corrects_gap(mechanism) * (1 - bias ** (dt / model.unit))
@@ -232,10 +233,10 @@ def _law(
 
 
 def _rows_of_grooves(mechanism: Mechanism, pose: Array, gap: Array, inverse_mass: Array) -> Array:
-    """The rows (rows, 3 bodies) whose velocities a step sets. The row of a groove is n^T K^-1 J / n^T K^-1 n.
+    """The rows (rows, 3 bodies) whose velocities a step sets; the row of a groove is n^T K^-1 J / n^T K^-1 n.
 
-    J (2, 3 bodies) maps the twists to the velocity of the anchor on the second body, relative to the point of the first
-    body at the foot of the perpendicular from the anchor on the groove.
+    J (2, 3 bodies) maps twists to the relative velocity of two points: the anchor on the second body, and the anchor's
+    foot of the perpendicular on the groove of the first body.
     """
     out, row = mechanism.rows(pose), 0
     for joint in mechanism.joints:

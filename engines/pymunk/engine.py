@@ -1,4 +1,4 @@
-"""The engine pymunk: its settings, and the models and runs that it builds for a mechanism."""
+"""The engine pymunk: its settings, models and runs."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from reference.rolling.roll import Roll
 
 
 def _shipped() -> tuple[int, float]:
-    """The default iterations of a space and the default error_bias of a joint."""
-    space = pymunk.Space()  # a local variable, since a space that still exists when Python ends can crash the process
+    """pymunk's default iterations of a space and default error_bias of a joint."""
+    space = pymunk.Space()  # local, since a space that exists when Python ends can crash the process
     return space.iterations, PivotJoint(space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0)).error_bias
 
 
-# 10 and 0.9 ** 60, with which a joint corrects a tenth of its gap in 1/60 s.
+# The values are 10 and 0.9 ** 60, with which a joint corrects a tenth of a gap in 1/60 s.
 SHIPPED_ITERATIONS, SHIPPED_ERROR_BIAS = _shipped()
 CONTRACTION = "contraction"
-# CPU time [s] of a step with three bodies, and of a joint in an iteration.
+# CPU time [s] of a step of three bodies, and of an iteration of one joint.
 STEP_COST, ITERATION_COST = 2e-6, 13e-9
-# Iterations of a start-up step with contacts. The convergence factor does not describe how contact points act on each
-# other: after five iterations half of the contact force of a disc is missing.
+# Iterations of a start-up step with contacts. The convergence factor ignores that contact points act on each other.
+# After five iterations, half of a disc's contact force is missing.
 CONTACT_ITERATIONS = 1000
 
 
@@ -44,18 +44,18 @@ CONTACT_ITERATIONS = 1000
 class Pymunk(Engine, Valid):
     """Settings of pymunk; raises ValueError for values with which pymunk would abort the process.
 
-    `iterations`: iterations over the joints in a step. `error_bias`: the fraction of its gap that a joint leaves after
-    one second, in [0, 1]. The value "contraction" of either follows from the convergence of the iterations
-    (`engines.pymunk.iterations`): a step then makes at least `min_iterations`. It makes more than ITERATION_LIMIT only
-    if the product of iterations and joints is at most `max_work`. `startup_steps`: the steps in each stage of the
-    start-up, during which the iterations decrease; 0 for no start-up.
+    `iterations`: iterations over the joints in a step. `error_bias`: fraction of a gap, in [0, 1], that remains after
+    one second. If one of these settings is "contraction", it follows from the convergence of the iterations
+    (`engines.pymunk.iterations`). A step then makes at least `min_iterations`. It makes more than ITERATION_LIMIT only
+    if the product of iterations and joints is at most `max_work`. `startup_steps`: number of steps in each stage of the
+    start-up, in which the iterations decrease; 0 for no start-up.
 
     `leapfrog`: start with half a kick and average the velocities. The steps then skip the checks of `Space.step`, which
-    concern changes of the model. `skate`, `roll` and `slot`: the construction of these joints (`joints.slide` and
-    `joints.roll`). `contact`: the settings of contact for a Roll.
+    concern changes of the model. `skate`, `roll`, `slot`: constructions of these joints (`joints.slide` and
+    `joints.roll`). `contact`: settings of contacts for a Roll.
 
-    Models with a `gain` below 1 use a unit of time in which the step is 1. In seconds, the error_bias of such a gain
-    would underflow to 0 (gain 1) for small steps.
+    A model with a `gain` below 1 uses the step as the unit of time. In seconds, the error_bias would underflow to 0
+    (gain 1) for small steps.
     """
 
     name = "pymunk"
@@ -92,7 +92,8 @@ class Pymunk(Engine, Valid):
         return declared.enforcement(self, joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """The regularisation for steps of dt [s]; None if all rows are at the pose after the drift and leave no gap.
+        """The regularisation for steps of dt [s]; None if all rows are at the pose after the drift and correct the
+        whole gap.
 
         A step removes all slip and corrects a fraction of each gap. Rows at the pose before the drift lack J_dot v.
         """
@@ -126,7 +127,7 @@ class Pymunk(Engine, Valid):
     def plan(self, mechanism: Mechanism, duration: NonNegative = 0.0) -> IterationPlan:
         """The plan of iterations for a motion of `duration` [s].
 
-        If `iterations` is "contraction", the pose of the motion with the slowest convergence determines their number.
+        If `iterations` is "contraction", the pose with the slowest convergence determines the number of iterations.
         """
         if isinstance(self.iterations, int) and self.error_bias != CONTRACTION:
             return IterationPlan(self.iterations)
@@ -153,10 +154,10 @@ class Pymunk(Engine, Valid):
 
 @dataclass(frozen=True)
 class Extended(EngineWrapper, Valid):
-    """Extrapolation with the powers of the step size that occur in the error of the mechanism.
+    """Extrapolation with the powers of the step that the error of the mechanism contains.
 
-    `skates`: the extrapolation for mechanisms with skates or dampers. These act at the end of a step, so the error is
-    of first order. `pins`: the extrapolation for all other mechanisms.
+    `skates`: extrapolation for mechanisms with skates or dampers, which act at the end of a step, so that the error has
+    order 1. `pins`: extrapolation for other mechanisms.
     """
 
     variant: Name

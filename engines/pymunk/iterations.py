@@ -1,6 +1,6 @@
 """The iterations in a step of pymunk and the corrected fraction of a gap, for the worst pose of a motion.
 
-The poses come from a pilot run with soft joints and long steps, since approximate poses are sufficient.
+Approximate poses are sufficient and come from a pilot run with soft joints and long steps.
 """
 
 from __future__ import annotations
@@ -33,20 +33,21 @@ from reference.joints import Roll
 from reference.mechanism import Mechanism
 from reference.validators import from_to
 
-# Factor on the largest stable gain (1 - r)/r, if the iterations do not reach RESIDUAL.
+# Factor on the largest stable gain (1 - r)/r if the residual r exceeds RESIDUAL.
 SAFETY = 0.8
-# With more iterations, a step of a hundred links costs more than a smaller step gains.
+# Limit on iterations. With more iterations, a smaller step would be a better use of the CPU time for a hundred links.
 ITERATION_LIMIT = 300
 CONVERGED_RESIDUAL = 1e-16
-# Stages of the start-up. The last one ends at the tenth step, which is often the first sample.
+# Number of stages of the start-up. The last stage ends at the tenth step, which is often the first sample.
 STARTUP_STAGES = 6
 
-# Number of poses of the pilot run, up to DENSE rows and above. There a pose costs as much as some hundred steps.
+# Number of poses of the pilot run, for up to DENSE rows and for more rows. With more rows, a pose takes as long as some
+# hundred steps.
 PILOT_POSES, FEW_PILOT_POSES = 16, 2
-# Steps of the pilot run per radian of the fastest motion.
+# Number of steps of the pilot run per radian of the fastest motion.
 PILOT_STEPS = 20
 MAX_PILOT_STEPS = 4096
-# A step of the pilot run corrects a tenth of each gap. No mechanism was found that is unstable with this fraction.
+# A step of the pilot run corrects a tenth of a gap. We found no mechanism that is unstable with this fraction.
 PILOT = Settings(iterations=10, error_bias=0.9, unit=1.0, skate="groove", roll="pivot")
 # Largest gap of a usable pose of the pilot run, in rad or relative to the mechanism's length scale.
 MAX_PILOT_GAP = 0.05
@@ -56,10 +57,10 @@ Whole = Annotated[int, from_to(0, LARGEST_COUNT)]
 
 @dataclass(frozen=True)
 class IterationPlan:
-    """The iterations in a step, the residual of the slowest mode after them, and the corrected fraction of a gap.
+    """The iterations in a step, the resulting residual of the slowest mode, and the corrected fraction of a gap.
 
-    `converged`: the iterations that reach CONVERGED_RESIDUAL, or fewer if STARTUP_WORK limits them.
-    `converged_residual`: the residual after these.
+    `converged`: number of iterations that reach CONVERGED_RESIDUAL, or fewer if STARTUP_WORK limits them.
+    `converged_residual`: residual after `converged` iterations.
     """
 
     iterations: int
@@ -69,11 +70,10 @@ class IterationPlan:
     converged_residual: float = 0.0
 
     def startup(self, steps: int) -> list[int]:
-        """The iterations of the first steps. They decrease from converged ones in stages of `steps` steps each.
+        """The iterations of the first steps, which decrease from `converged` in stages of `steps` steps each.
 
-        The iterations change after a number of steps and not at a fixed time. This disturbs the expansion of the error
-        in the step size, but small changes disturb it little. In an extrapolation, `steps` is such that each stage ends
-        at the same time in all runs.
+        Each change of the iterations disturbs the error expansion, but small changes disturb it little. In an
+        extrapolation, `steps` is such that a stage ends at the same time in all runs.
         """
         first = [self.converged, *[ceil(self.converged / 2)] * (steps - 1)][:steps]
         if not 0 < self.residual <= RESIDUAL:
@@ -97,7 +97,7 @@ def plan_with(rho: float, iterations: int, converged: int = 1000) -> IterationPl
 def iterations_in_step(rho: Factor, joints: Count = 1, fewest: Count = MIN_ITERATIONS, work: Whole = 0) -> int:
     """The number of iterations that reduce the slowest mode to RESIDUAL; at least `fewest`.
 
-    If their product with the number of joints exceeds `work`, ITERATION_LIMIT is the upper limit.
+    If iterations times joints exceed `work`, ITERATION_LIMIT is the upper limit.
     """
     needed = iterations_for(rho, fewest)
     return needed if needed * joints <= work else min(needed, max(ITERATION_LIMIT, fewest))
@@ -112,11 +112,11 @@ def stable_gain(rho: Factor, iterations: Count) -> float:
 
 @validated
 def worst_factor(mechanism: Mechanism, duration: NonNegative, rolls_are_contacts: bool = False) -> float:
-    """The largest convergence factor at the start and at the poses of a pilot run of `duration` [s].
+    """The largest convergence factor at t = 0 and at the poses of a pilot run of `duration` [s].
 
-    If some rows correct no gap, `engines.pymunk.convergence.stable_factor` increases it.
+    If some rows correct no gap, `engines.pymunk.convergence.stable_factor` increases the factor.
     """
-    # Rounded, because the levels of an extrapolation compute the duration with different rounding.
+    # The duration is rounded, since its rounding errors differ between the levels of an extrapolation.
     return _worst_factor(mechanism, float(f"{duration:.12g}"), rolls_are_contacts)
 
 
@@ -148,7 +148,7 @@ def _pilot_poses(mechanism: Mechanism, duration: float) -> list[np.ndarray]:
     except Unsupported:
         return []
     except (ValueError, ArithmeticError):
-        # In a pilot run, curves may reach a pose without contact. In a mechanism without curves the error is a bug.
+        # In a pilot run, curves may reach a pose without contact. Without curves, the exception is a bug.
         if not any(isinstance(joint, Roll) for joint in mechanism.joints):
             raise
         return []

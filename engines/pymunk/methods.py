@@ -1,4 +1,4 @@
-"""The methods of pymunk: METHODS for all scenes, and methods that compare constructions of a joint."""
+"""The methods of pymunk. METHODS are for all scenes, and the other methods compare constructions of a joint."""
 
 from __future__ import annotations
 
@@ -10,18 +10,20 @@ from engines.pymunk.engine import Extended, Pymunk
 from engines.pymunk.joints.roll import ContactSettings
 
 DEFAULT = Pymunk("default")
-# With bias 1 the engine corrects no overlap, because pushing bodies apart also rolls them. `slop` then has no effect.
+# With bias 1 the engine corrects no overlap, because a correction would also roll the bodies. `slop` then has no
+# effect.
 UNCORRECTED_OVERLAP = ContactSettings(slop=1.0, bias=1.0, vertices=512)
 TUNED = Pymunk("tuned", "contraction", "contraction", skate="groove", contact=UNCORRECTED_OVERLAP)
 LEAPFROG = Pymunk("leapfrog", "contraction", "contraction", leapfrog=True, skate="groove", roll="pivot")
-# Extrapolation needs a stable method whose error is smooth in the step size from the first sample on. For a few
-# mechanisms with nearly dependent rows, 300 iterations converge too little. This limit allows them more, in about 2 ms.
+# Extrapolation needs a stable method, and an error that is smooth in the step from the first sample on. For a few
+# mechanisms with nearly dependent rows, 300 iterations converge too little. This limit permits more iterations, which
+# take about 2 ms.
 LARGEST_WORK = 200_000
 STARTED = replace(LEAPFROG, startup_steps=1, max_work=LARGEST_WORK)
-# In a loop with skates and hinges, fewer iterations leave a residual above the error of the step. Forty iterations take
-# as long as placing one groove.
+# In a loop with skates and hinges, fewer iterations have a residual above the error of the step. Forty iterations take
+# as long as the placing of one groove.
 WITH_GROOVES = replace(STARTED, variant="aimed", leapfrog=False, min_iterations=40)
-# The error of the leapfrog contains all powers of the step size from the second on, with a skate from the first on.
+# The error of the leapfrog contains all powers of the step from 2 on. With a skate it contains all powers from 1 on.
 FIVE_LEVELS = (2, 3, 4, 6, 8)
 EXTENDED = Extended(
     "extended",
@@ -38,7 +40,7 @@ SKATE_GROOVE = Pymunk("skate: groove, predicted heading", skate="groove")
 SKATE_GROOVE_EXTRAPOLATED = replace(EXTENDED.skates, variant="skate: groove, extrapolated")
 SKATE_METHODS = (SKATE_CENTRE, SKATE_POINT, SKATE_PROJECTED, SKATE_GROOVE, SKATE_GROOVE_EXTRAPOLATED)
 
-# For a round body these methods are the same, since its shape is a circle.
+# For a round body these methods are equal, since its shape is a circle.
 POLYGON_CORNERS = (8, 32, 128, 512)
 ROLL_FACETED = tuple(
     Pymunk(f"roll: contact, {corners} corners", roll="contact", contact=ContactSettings(1.0, 1.0, vertices=corners))

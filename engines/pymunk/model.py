@@ -1,9 +1,9 @@
 """The pymunk model of a mechanism, with one construction for each kind of joint and force element.
 
-A spring acts at the pose after the drift, as gravity does, and does not lower the order of convergence. A damper is of
-first order: it multiplies the relative velocity by exp(-damping dt / effective mass) once, after the kick, instead of
-half before and half after it. Chipmunk applies the force and torque of a body after the drift, and resets them in every
-step. They are therefore set before each step for the pose after its drift, which is known exactly.
+A spring acts at the pose after the drift, as gravity does, and does not lower the order of convergence. A damper has
+order 1. It multiplies the relative velocity by exp(-damping dt / effective mass) after the kick, and not by the square
+root before and after the kick. Chipmunk applies the force and torque of a body after the drift, and resets them in
+every step. Our code therefore sets them before each step, for the exact pose after the drift.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from reference.rolling.roll import Roll
 
 Pair = tuple[pymunk.Body, pymunk.Body]
 Constraints = list[constraints.Constraint]
-# Numbers of scalar rows of the pymunk constraints that represent joints. Springs have no rows.
+# Numbers of scalar rows of pymunk constraints that represent joints. Springs have no rows.
 CONSTRAINT_ROWS: Mapping[type[constraints.Constraint], int] = {
     constraints.PivotJoint: 2,
     constraints.SimpleMotor: 1,
@@ -58,8 +58,8 @@ CONSTRAINT_ROWS: Mapping[type[constraints.Constraint], int] = {
 @dataclass(frozen=True)
 class Settings:
     iterations: int
-    error_bias: float  # Per unit of time.
-    unit: float  # s, the unit of time of the model.
+    error_bias: float  # Error bias per unit of time.
+    unit: float  # Unit of time of the model [s].
     skate: SkateConstruction
     roll: RollConstruction
     slot: SlotConstruction = "exact"
@@ -68,10 +68,10 @@ class Settings:
 
 @dataclass(frozen=True)
 class Model:
-    """A space and its bodies in the order of the mechanism. `unit` [s] is the unit of time of its velocities.
+    """A space and its bodies in the order of the mechanism; `unit` is the unit of time [s].
 
-    `origins` (bodies, 2) [m]: the origin of each pymunk body in the body frame of the mechanism. It is the pin of a
-    crank, and the centre of mass of every other body.
+    `origins` (bodies, 2) [m] are the origins of the pymunk bodies in the mechanism's body frames. The origin of a crank
+    is its pin. The origin of any other body is its centre of mass.
     """
 
     space: pymunk.Space
@@ -85,7 +85,7 @@ class Model:
     def stepper(self, raw: bool) -> tuple[Callable[[Any, float], None], Any]:
         """A function and a space for calls `step(space, dt)`, which include the updates before and after a step.
 
-        The function is `Space.step`, or Chipmunk's cpSpaceStep if `raw`.
+        The function calls `Space.step`, or Chipmunk's cpSpaceStep if `raw`.
         """
         step, space = (lib.cpSpaceStep, self.space._space) if raw else (pymunk.Space.step, self.space)
         before_step, after_step = self.before_step, self.after_step
@@ -109,7 +109,7 @@ class Model:
             body.position_func = _no_drift  # pyright: ignore[reportAttributeAccessIssue]
         self.space.step(dt)
         for body in self.bodies:
-            body.position_func = pymunk.Body.update_position  # pymunk restores the C function: no cost afterwards
+            body.position_func = pymunk.Body.update_position  # pymunk restores the C function
         for update in self.after_step:
             update()
 
@@ -135,7 +135,7 @@ class _Builder:
         self.space.add(*self.bodies.values())
         self.before_step: list[BeforeStep] = []
         self.after_step: list[AfterStep] = []
-        self.pushed_points: dict[str, list[tuple[Vector, Vector]]] = {}  # (point, force) by the body's name
+        self.pushed_points: dict[str, list[tuple[Vector, Vector]]] = {}  # (point, force) by name of the body
         self.torques: dict[str, float] = {}
         self.rows = self.solver_rows = self.rolls = 0
 
@@ -156,7 +156,7 @@ class _Builder:
     def model(self) -> Model:
         for joint in self.mechanism.joints:
             for constraint in self._constraints(joint):
-                # A groove that is placed before every step has only the gap of rounding, whose correction adds noise.
+                # The gap of a groove that is placed before every step is rounding, whose correction would add noise.
                 placed = isinstance(joint, Skate) and self.settings.skate == "groove"
                 constraint.error_bias = 1.0 if placed else self.settings.error_bias
                 self.space.add(constraint)
@@ -180,7 +180,7 @@ class _Builder:
         return self.cranks[name].own_point if name in self.cranks else (0.0, 0.0)
 
     def from_origin(self, name: str | None, point: Vector) -> Vector:
-        """The vector [m] from the origin of a pymunk body to a point of the mechanism's body frame."""
+        """The vector [m] from the origin of a pymunk body to a point in the mechanism's body frame."""
         x, y = self.origin(name)
         return (point[0] - x, point[1] - y)
 
@@ -189,7 +189,7 @@ class _Builder:
         return self.from_origin(*first), self.from_origin(*second)
 
     def _constraints(self, joint: Joint) -> Constraints:
-        """The constraints of a joint. There are none if a prescribed motion of its bodies implies the joint."""
+        """The constraints of a joint; empty if prescribed motions of the bodies satisfy the joint."""
         if any(joint in (crank.pin, crank.drive) for crank in self.cranks.values()) or joint in self.turned.values():
             return []
         pair = self._pair(joint)
@@ -215,11 +215,11 @@ class _Builder:
 
     def rod(self, joint: Rod, pair: Pair) -> Constraints:
         constraint = constraints.PinJoint(*pair, *self.anchors(joint))
-        constraint.distance = joint.length  # pymunk's default is the distance at the start
+        constraint.distance = joint.length  # pymunk's default is the distance at t = 0
         return [constraint]
 
     def gear(self, joint: Gear, pair: Pair) -> Constraints:
-        # Chipmunk holds ratio angle_b - angle_a = phase (preStep in its cpGearJoint.c), so both are inverted.
+        # Chipmunk keeps ratio angle_b - angle_a = phase (preStep in cpGearJoint.c), so ratio and phase are inverted.
         return [constraints.GearJoint(*pair, joint.phase / joint.ratio, 1 / joint.ratio)]
 
     def weld(self, joint: Weld, pair: Pair) -> Constraints:
@@ -236,7 +236,7 @@ class _Builder:
         rows, before_step, after_step = build_skate(joint, self.settings.skate, *pair, point, scale)
         self.before_step += before_step
         self.after_step += after_step
-        self.rows += 0 if rows else 1  # a row that our code enforces
+        self.rows += 0 if rows else 1  # our code enforces this row
         return rows
 
     def roll(self, joint: Roll, pair: Pair) -> Constraints:
@@ -254,11 +254,11 @@ class _Builder:
         self.space.add(*shapes)
         self.rolls += 1
         self.rows += 2
-        # A contact point has a normal and a tangential row; a flat side has two points.
+        # A contact point has a normal row and a tangential row. A flat side has two points.
         self.solver_rows += 2 if any(isinstance(shape, pymunk.Circle) for shape in shapes) else 4
         return []
 
-    # Two bodies with prescribed motions get no spring, since pymunk would divide by zero.
+    # There is no spring between two bodies with prescribed motions, since pymunk would divide by zero.
 
     def spring(self, element: Spring, pair: Pair) -> None:
         if can_move(pair):
@@ -272,7 +272,7 @@ class _Builder:
 
     def torsion_spring(self, element: TorsionSpring, pair: Pair) -> None:
         if can_turn(pair[0]) or can_turn(pair[1]):
-            # Chipmunk's relative angle is that of the first body minus that of the second (cpDampedRotarySpring.c).
+            # In Chipmunk the relative angle is first angle - second angle (cpDampedRotarySpring.c).
             stiffness = element.stiffness * self.settings.unit * self.settings.unit
             self.space.add(constraints.DampedRotarySpring(*pair, -element.rest_angle, stiffness, 0.0))
 
@@ -307,10 +307,10 @@ def can_turn(body: pymunk.Body) -> bool:
 
 
 def _push(body: pymunk.Body, points: list[tuple[Vector, Vector]], torque: float) -> BeforeStep:
-    """The update that sets constant forces, as (point, force), and a torque on a body for the pose after the drift."""
+    """The update that sets a torque and constant forces (point, force) on a body for the pose after the drift."""
     pointer = body._body
     x, y = sum(force[0] for _, force in points), sum(force[1] for _, force in points)
-    # The moments of the forces at the angles 0 and pi/2.
+    # Moments of the forces at the angles 0 and pi/2.
     across = sum(point[0] * force[1] - point[1] * force[0] for point, force in points)
     along = -sum(point[0] * force[0] + point[1] * force[1] for point, force in points)
 
@@ -322,7 +322,7 @@ def _push(body: pymunk.Body, points: list[tuple[Vector, Vector]], torque: float)
     return push
 
 
-# The construction of each kind of joint. Other kinds of joints and forces are refused.
+# Constructions of joints. Other kinds of joints are refused.
 CONSTRUCTIONS: Mapping[type, Callable[[_Builder, Any, Pair], Constraints]] = {
     Pin: _Builder.pin,
     Weld: _Builder.weld,

@@ -1,4 +1,4 @@
-"""Runs of a pymunk model: the recording of states in C, and poses, twists and reactions from them."""
+"""Runs of a pymunk model: C code records states, from which poses, twists and reactions are computed."""
 
 from __future__ import annotations
 
@@ -27,17 +27,18 @@ Array = NDArray[np.float64]
 
 VELOCITIES = BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 STATES = BodyFields.POSITION | BodyFields.ANGLE | VELOCITIES
-# Free entries at the end of the array. pymunk's C code reallocates an array that is almost full, which numpy forbids.
+# Number of free entries at the end of the array. pymunk's C code would reallocate an array that is almost full, which
+# numpy forbids.
 SPARE = 64
-# Residual of the slowest mode in the reactions at t = 0, above which a run gets a warning.
+# Largest residual of the slowest mode in the reactions at t = 0 without a warning.
 MAX_START_RESIDUAL = 1e-5
 
 
 class StateRecorder:
-    """Copies the states of bodies in C to an array that is allocated in advance.
+    """Copies states of bodies in C code to an array that is allocated in advance.
 
-    `lib.cpSpaceEachBody(space, visitor, states)` appends the states of all bodies, and with `velocities` in place of
-    `states` their velocities.
+    `lib.cpSpaceEachBody(space, visitor, states)` appends the states of all bodies. With `velocities` in place of
+    `states`, the call appends the velocities.
     """
 
     def __init__(self, model: Model, states: int, velocities: int) -> None:
@@ -50,7 +51,7 @@ class StateRecorder:
         floats = ffi.from_buffer("double[]", room)
         integers = ffi.new("pmIntArray *")
         target = ffi.new("pmFloatArray *", {"num": 0, "max": len(floats), "arr": floats})
-        self._owned = (floats, integers, target)  # kept alive, since C has only pointers to these
+        self._owned = (floats, integers, target)  # keeps these objects alive for C code
         self.visitor = ffi.addressof(lib, "pmSpaceBodyGetIteratorFuncBatched")
         self.states, self.velocities = (
             ffi.new("pmBatchedData *", {"intArray": integers, "floatArray": target, "fields": fields.value})
@@ -60,7 +61,7 @@ class StateRecorder:
     def read(self, samples: int, with_velocities: bool) -> tuple[Array, Array]:
         """States (samples + 1, bodies, 6), and velocities (samples, bodies, 3) one step before each sample.
 
-        The array contains the first state. Then it contains, for each sample, the velocities before it (if
+        The array contains the first state, and then for each later sample the previous velocities (if
         `with_velocities`) and the state.
         """
         first, rest = np.split(self._values, [6 * self._count])
@@ -72,7 +73,7 @@ class StateRecorder:
 
 
 def _visited_bodies(space: pymunk.Space) -> list[int]:
-    """The ids of the bodies of a space in the order in which C visits them. It differs from the order of addition."""
+    """The ids of a space's bodies in the order of C code, which differs from the order of addition."""
     buffer = Buffer()
     get_space_bodies(space, BodyFields.BODY_ID, buffer)
     return list(memoryview(buffer.int_buf()).cast("P"))
@@ -80,22 +81,23 @@ def _visited_bodies(space: pymunk.Space) -> list[int]:
 
 @dataclass(frozen=True)
 class Recording:
-    """The states of a run at its samples: poses and velocities of the centres of mass, in the mechanism's order.
+    """Poses and velocities of the centres of mass at the samples, in the mechanism's order.
 
-    The engine stores velocities together with the positions at t. They are those at t, or at t + dt/2 in a leapfrog.
+    The engine stores velocities together with the positions at t. They are the velocities at t, or at t + dt/2 in a
+    leapfrog.
     """
 
     pose: Array  # (times, bodies, 3) at t.
     after: Array  # Velocities (times, bodies, 3) that the engine stores with the positions at t.
-    before: Array  # Velocities (times - 1, bodies, 3) one step earlier, from the second sample on.
+    before: Array  # Velocities (times - 1, bodies, 3) one step before each sample after the first.
     stepping: float  # CPU time [s].
-    stopped: RunWarning | None = None  # The reason why stepping ended early; all later values are NaN.
+    stopped: RunWarning | None = None  # Why stepping ended early; later values are NaN.
 
 
 def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup: Sequence[int] = ()) -> Recording:
-    """Make samples * every steps, and record every `every`-th state and the velocities one step before it.
+    """Make samples * every steps; record the states at samples, and the velocities one step before each sample.
 
-    `startup`: the iterations of the first steps.
+    `startup`: iterations of the first steps.
     """
     with_velocities = every > 1
     recorder = StateRecorder(model, samples + 1, samples if with_velocities else 0)
@@ -104,7 +106,8 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
     dt /= model.unit
     visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
     stopped: RunWarning | None = None
-    # `pop` takes the last entry first. The first entry restores the iterations of the model.
+    # The list is in reverse order, since `pop` takes the last entry. The first entry restores the iterations of the
+    # model.
     iterations = [model.space.iterations, *reversed(startup)] if startup else []
 
     def advance(count: int) -> bool:
@@ -133,7 +136,7 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
 
 
 def _at_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array, Array, Array]:
-    """Poses and velocities of the centres of mass, from those of the engine's origins. They differ only for cranks."""
+    """Poses and velocities of the centres of mass, which differ from those of the engine's origins only for cranks."""
     pose, after, before = states[..., :3].copy(), states[..., 3:].copy(), earlier.copy()
     for index in _cranks(model):
         x, y = -model.origins[index]
@@ -151,7 +154,7 @@ def _cranks(model: Model) -> NDArray[np.intp]:
 
 
 def accelerations(model: Model, recording: Recording, dt: float) -> Array:
-    """Accelerations (times - 1, bodies, 3) of the centres of mass, from the second sample on."""
+    """Accelerations (times - 1, bodies, 3) of the centres of mass at the samples after the first."""
     out = (recording.after[1:] - recording.before) / dt
     for index in _cranks(model):
         # The centre of mass of a crank turns about the pin at a constant rate.
@@ -164,9 +167,9 @@ def accelerations(model: Model, recording: Recording, dt: float) -> Array:
 
 
 def inertias_and_gravity(model: Model) -> tuple[Array, tuple[float, float]]:
-    """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] that pymunk uses.
+    """Masses and inertias (bodies, 3) [kg, kg, kg m^2] and gravity [m/s^2] in the space.
 
-    All three are NaN for a kinematic body. The inertia is NaN for a body with an infinite moment.
+    Masses and inertias of a kinematic body are NaN. An infinite moment of inertia is replaced by NaN.
     """
     inertias = np.full((len(model.bodies), 3), np.nan)
     for row, body in zip(inertias, model.bodies, strict=True):
@@ -196,10 +199,10 @@ class PymunkRun(OneShot):
 
     @validated
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory:
-        """The trajectory of a call, with reactions only at every `each`-th sample, and NaN between them."""
+        """The trajectory of a run with reactions at every `each`-th sample; other reactions are NaN."""
         self._mechanism.require_room(samples)
         self.begin()
-        # The plan is not timed as stepping, since all runs of a mechanism use the same one.
+        # The plan is not part of the stepping time, since all runs of a mechanism use the same plan.
         plan = self._engine.plan(self._mechanism, samples * every * self._dt)
         model, startup = self._started(plan), plan.startup(self._engine.startup_steps)
         recording = record(model, self._dt, samples, every, raw=self._engine.leapfrog, startup=startup)
@@ -222,9 +225,9 @@ class PymunkRun(OneShot):
     def _start_reaction(self, plan: IterationPlan) -> Array:
         """The reactions (rows,) at t = 0, from the first steps of another model with converged iterations.
 
-        The impulse of the first step contains a position correction of up to half the centripetal force. This part
-        falls by one order of dt in each step. The reaction of the third step is therefore returned, with an error of
-        first order. In a leapfrog the third and fourth steps are extrapolated to t = 0, with an error of second order.
+        The impulse of the first step contains a position correction of up to half the centripetal force. In each step
+        this part decreases by a factor of order dt. Therefore the reaction of the third step is returned, with an error
+        of order 1. In a leapfrog the third and fourth steps are extrapolated to t = 0, with an error of order 2.
         """
         model = self._started(replace(plan, iterations=plan.converged, gain=1.0))
         recording = record(model, self._dt, samples=4, every=1, raw=self._engine.leapfrog)

@@ -1,4 +1,4 @@
-"""The writer of Python scripts that make a pymunk space and do not need this package."""
+"""Write a Python script that makes a pymunk space and does not need this package."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _point(vector: Any) -> str:
     return repr(tuple(vector))
 
 
-# The arguments of each kind of constraint after its two bodies. Other kinds of constraints are refused.
+# Arguments of constraints after the two bodies. Other kinds of constraints are refused.
 ARGUMENTS: Mapping[type[constraints.Constraint], Callable[[Any], tuple[str, ...]]] = {
     constraints.PivotJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
     constraints.PinJoint: lambda joint: (_point(joint.anchor_a), _point(joint.anchor_b)),
@@ -39,7 +39,7 @@ ARGUMENTS: Mapping[type[constraints.Constraint], Callable[[Any], tuple[str, ...]
 
 
 def object_lines(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> list[str]:
-    """Lines that make bodies b0, b1, ... and constraints j0, j1, ... in `space`; raises Unsupported."""
+    """Lines that make bodies (b0, b1 and so on) and constraints (j0, j1 and so on) in `space`; raises Unsupported."""
     lines = []
     for number, body in enumerate(bodies):
         kind = {0: "", 1: "body_type=pymunk.Body.KINEMATIC", 2: "body_type=pymunk.Body.STATIC"}[body.body_type]
@@ -65,9 +65,9 @@ def object_lines(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> list[str
 
 
 def script(engine: Any, mechanism: Mechanism, dt: float) -> str:
-    """A script with a function `make` that returns the space, and a loop that steps it.
+    """A script with a function `make` that returns the space, and a loop that steps the space.
 
-    Raises Unsupported for a method that needs our code between its steps.
+    Raises Unsupported for a method that needs our code between steps.
     """
     if not isinstance(engine, Pymunk):
         raise Unsupported("this variant consists of several runs, but a script makes one; choose default or tuned")
@@ -114,9 +114,9 @@ if __name__ == "__main__":
 
 
 def _push_function(mechanism: Mechanism, forces: Sequence[Force | Torque], bodies: Sequence[pymunk.Body]) -> str:
-    """The text of a function that sets the constant forces and torques, or "" if there are none.
+    """The text of a function that sets the constant forces and torques, or "" if there are no such loads.
 
-    The script calls it before every step, since pymunk resets the forces and torques in a step.
+    The script calls the function before every step, since a step of pymunk resets forces and torques.
     """
     pushed = np.zeros((len(bodies), 3))
     for force in forces:

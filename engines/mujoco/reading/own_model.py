@@ -47,7 +47,7 @@ def centres(planar: PlanarModel, data: Any) -> Array:
 
 
 def directions(planar: PlanarModel, data: Any) -> Array:
-    """The twists (bodies, 3, nv) due to unit velocities of MuJoCo's coordinates."""
+    """Twists (bodies, 3, nv) due to unit velocities of MuJoCo's coordinates."""
     jac, out = np.zeros((2, 3, planar.model.nv)), np.zeros((len(planar.bodies), 3, planar.model.nv))
     for index, (root, centre) in enumerate(zip(planar.groups.roots, centres(planar, data), strict=True)):
         mujoco.mj_jac(planar.model, data, jac[0], jac[1], centre, root)

@@ -1,7 +1,8 @@
 """Prescribed rotations in pymunk: bodies that the ground drives, and motors between two other bodies.
 
-A crank is a body that the ground drives and that a pin joins to the ground. It is kinematic and turns about the pin. A
-driven body without such a pin has an infinite moment of inertia. No impulse changes its rate, so its angle is exact.
+A crank is a body with a drive and a pin to the ground. In pymunk it is a kinematic body that turns about the pin. A
+driven body without a pin to the ground has an infinite moment of inertia. No impulse changes its rate, so its angle is
+exact.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ def find_cranks(mechanism: Mechanism) -> dict[str, Crank]:
 
 
 def find_turned(mechanism: Mechanism) -> dict[str, Drive]:
-    """The first drive between the ground and each body, by the name of the body; includes the cranks."""
+    """The first drive between the ground and a body, by the body's name; includes cranks."""
     return _joints_to_ground(mechanism, Drive)
 
 
@@ -54,7 +55,7 @@ def _rate(joint: Drive) -> float:
 
 
 def crank_body(crank: Crank, body: Body, unit: float) -> pymunk.Body:
-    """A kinematic body with its origin at the pin, so that pin and angle are exact. `unit` [s]: the unit of time."""
+    """A kinematic body whose origin is at the pin, so that pin and angle are exact; `unit` is the unit of time [s]."""
     kinematic = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     kinematic.position, kinematic.angle = crank.ground_point, body.pose[2]
     kinematic.angular_velocity = _rate(crank.drive) * unit
@@ -62,13 +63,13 @@ def crank_body(crank: Crank, body: Body, unit: float) -> pymunk.Body:
 
 
 def turned_body(drive: Drive, body: Body, unit: float) -> pymunk.Body:
-    """A body that impulses move but do not turn. The caller sets its position, angle and velocity."""
+    """A body that impulses cannot turn; the caller sets position, angle and velocity."""
     turned = pymunk.Body(body.mass, float("inf"))
     turned.angular_velocity = _rate(drive) * unit
     return turned
 
 
 def motor(joint: Drive, first: pymunk.Body, second: pymunk.Body, unit: float) -> SimpleMotor:
-    """A motor, which holds the relative rate but no angle: the angle drifts by the sum of the residuals."""
-    # Chipmunk drives omega_first - omega_second to the motor's rate (applyImpulse in its cpSimpleMotor.c).
+    """A motor, which keeps the relative rate; the relative angle drifts by the sum of the residuals."""
+    # In Chipmunk omega_first - omega_second becomes the motor's rate (applyImpulse in cpSimpleMotor.c).
     return SimpleMotor(first, second, -joint.turning_rate * unit)

@@ -1,8 +1,8 @@
 """Constructions of a Roll in pymunk, by `RollConstruction`.
 
 - "contact": two shapes with contact and friction, as a user would build them.
-- "pivot": a `PivotJoint`. Before every step its anchors are set to the two points of the curves that will be in contact
-  after the drift. Arc lengths are measured from t = 0, so the joint corrects the whole gap since then.
+- "pivot": a `PivotJoint`. Before every step our code sets the anchors to the two points of the curves that will be in
+  contact after the drift. Arc lengths begin at t = 0, so the joint corrects the accumulated gap.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from reference.rolling.roll import Roll
 from reference.validators import from_to
 
 RollConstruction = Literal["contact", "pivot"]
-ToEngine = Callable[[Vector], Vector]  # converts a point of a body frame to the origin of the engine's body
+ToEngine = Callable[[Vector], Vector]  # converts a point of a mechanism's body frame to pymunk's body frame
 
 
 def _shipped() -> tuple[float, float]:
     """The default collision_slop and collision_bias of a space."""
-    space = pymunk.Space()  # a local variable, see `engines.pymunk.engine`
+    space = pymunk.Space()  # local, see `engines.pymunk.engine`
     return space.collision_slop, space.collision_bias
 
 
@@ -44,20 +44,20 @@ GROUND_HALF_LENGTH = 1e3  # Half the length of flat ground, in multiples of `ext
 class ContactSettings(Valid):
     """Settings of contacts; raises ValueError for values with which pymunk aborts the process or returns NaN.
 
-    `slop`: the overlap [m] that is not corrected. `bias`: the fraction of the remaining overlap that is left after one
-    second. `friction`: the coefficient of each shape; pymunk multiplies the two coefficients of a contact. `vertices`:
-    the number of corners, at equal arc lengths, of a body that is not round. `thickness`: the radius of the segment
-    whose surface is the flat ground, in multiples of `extent_of`. For polygons of some hundred corners on a segment of
-    zero thickness, Chipmunk sometimes computes a wrong normal (`tests/engines/test_pymunk.py`).
+    `slop`: overlap [m] that is not corrected. `bias`: fraction of any further overlap that remains after one second.
+    `friction`: coefficient of each shape; pymunk multiplies the two coefficients of a contact. `vertices`: number of
+    corners, at equal arc lengths, of a body that is not round. `thickness`: radius of the segment whose surface is the
+    flat ground, in multiples of `extent_of`. On a segment of zero thickness, Chipmunk sometimes computes a wrong normal
+    for polygons of some hundred corners (`tests/engines/test_pymunk.py`).
 
-    With the default settings the motion of a contact depends on the unit of length, since collision_slop is 0.1 of this
-    unit (pymunk 7.3.1). The angle of `rolling_ellipse` changes by 4e-3 rad with millimetres. With `slop` 0 or `bias` 1
-    it does not change.
+    With the default settings the motion of a contact depends on the unit of length, since collision_slop is 0.1 units
+    (pymunk 7.3.1). The angle of `rolling_ellipse` changes by 4e-3 rad if the unit is a millimetre. With `slop` 0 or
+    `bias` 1 it does not change.
     """
 
     slop: NonNegative = SHIPPED_SLOP
     bias: Fraction = SHIPPED_BIAS
-    friction: NonNegative = 10.0  # the product, 100, exceeds the coefficient that any rolling in the scenes needs
+    friction: NonNegative = 10.0  # the product, 100, is enough for all scenes
     vertices: Annotated[int, from_to(3, 10000)] = 64
     thickness: NonNegative = 0.1
 
@@ -66,7 +66,7 @@ SHIPPED_CONTACT = ContactSettings()
 
 
 def extent_of(mechanism: Mechanism) -> float:
-    """The size of a mechanism [m], rounded to a power of ten. Mechanisms of similar size then get the same shapes."""
+    """The size [m] of a mechanism, rounded to a power of ten, so that mechanisms of similar size have equal shapes."""
     return 10.0 ** round(math.log10(2 * mechanism.length_scale))
 
 
@@ -79,8 +79,8 @@ def contact_shapes(
 ) -> list[pymunk.Shape]:
     """The shapes of both curves, which collide only with each other.
 
-    `extent` [m]: the result of `extent_of`. `index`: the number of the Roll in the mechanism, from 0. `sides`: both
-    bodies, each with a function that converts a point [m] of the mechanism's body frame to that of pymunk.
+    `extent` [m]: result of `extent_of`. `index`: number of the Roll in the mechanism, from 0. `sides`: both bodies,
+    each with a function that converts a point [m] of the mechanism's body frame to pymunk's body frame.
     """
     if index >= 32:
         raise Unsupported(
@@ -122,7 +122,7 @@ def _shape(
 
 
 class MovedPivot:
-    """The pivot of a Roll. `origins` [m]: the origins of the pymunk bodies in the mechanism's body frames."""
+    """The pivot of a Roll; `origins` [m] are the origins of the pymunk bodies in the mechanism's body frames."""
 
     def __init__(self, joint: Roll, first: pymunk.Body, second: pymunk.Body, origins: tuple[Vector, Vector]) -> None:
         self._contact = rolled(joint.rolling).contact

@@ -1,29 +1,31 @@
-"""Constructions of a Slot and a Skate in pymunk: groove joints, pin joints across the line, corrected velocities.
+"""Constructions of a Slot and a Skate in pymunk, by groove joints, by pin joints, or by corrected velocities.
 
 `SlotConstruction` is the construction of a slot:
 
-- "groove": a `GrooveJoint`, as a user would build it. It solves for the impulse in both directions and keeps the normal
-  component (applyImpulse and grooveConstrain in Chipmunk's cpGrooveJoint.c). This impulse is correct only if the normal
-  is an eigenvector of the 2 by 2 inverse mass matrix of both bodies at the anchor. Otherwise motion across the groove
-  remains with any step size.
-- "exact": a `GrooveJoint` if its impulse is always correct, else a `MovedPinJoint`. It is always correct if the motion
-  of the first body is prescribed, and the anchor is the centre of mass of the second body or impulses cannot turn it.
+- "groove": a `GrooveJoint`, as a user would build it. Chipmunk solves for the impulse in both directions and keeps the
+  normal component (applyImpulse and grooveConstrain in cpGrooveJoint.c). This impulse is correct only if the normal is
+  an eigenvector of the 2 by 2 inverse mass matrix of both bodies at the anchor. Otherwise motion across the groove
+  remains at any step.
+- "exact": a `GrooveJoint` if its impulse is always correct, and otherwise a `MovedPinJoint`. The impulse is always
+  correct if two conditions are satisfied. The motion of the first body is prescribed. The anchor is the centre of mass
+  of the second body, or impulses cannot turn the second body.
 
 `SkateConstruction` is the construction of a skate. A blade constrains the same motion at every point of its axle. All
-constructions place it at the foot of the perpendicular from the centre of mass, where the impulse of a groove is
+constructions move the blade to the foot of the perpendicular from the centre of mass, where the impulse of a groove is
 correct.
 
-- "centre", which users try first: after each step, the velocity of the centre of mass across the blade is set to zero.
-  This is wrong unless the blade is at the centre of mass, since a force at the blade also turns the body.
-- "point": after each step, the velocity of the body is shifted until the point of the blade has no velocity across it.
-  The slip is zero except for rounding. The motion is wrong for the same reason.
-- "projection": after each step, an impulse at the blade removes the slip. It is of first order.
-- "groove": a `GrooveJoint` in the ground, placed before each step at the pose after the drift. This pose is exact. The
-  motion is of first order, and the slip is rounding. Between two moving bodies it is a `MovedPinJoint`.
+- "centre": after each step, our code sets the velocity of the centre of mass across the blade to zero, as users often
+  do. The motion is wrong unless the blade is at the centre of mass, since a force at the blade also turns the body.
+- "point": after each step, our code changes the velocity of the body so that the blade has no slip. The motion is
+  wrong, since a force at the blade also turns the body.
+- "projection": after each step, an impulse at the blade removes the slip. The motion has order 1.
+- "groove": a `GrooveJoint` in the ground, which our code places before each step at the exact pose after the drift. The
+  motion has order 1, and the slip is rounding. Between two moving bodies it is a `MovedPinJoint`.
 
-A `MovedPinJoint` is a `PinJoint` that is placed before every step. Its row is the relative velocity of its two anchors
-along the line between them. One anchor is the point of the joint, and the other one is a point of the first body
-straight across the line. The row is therefore that of a Slot or a Skate between any two bodies.
+A `MovedPinJoint` is a `PinJoint` that our code places before every step. Its row is the relative velocity of two
+anchors along the line between them. One anchor is the point of the joint. The other anchor is a point of the first
+body, such that the line between the anchors is perpendicular to the slot or blade. The row is therefore correct for a
+Slot or a Skate between any two bodies.
 """
 
 from __future__ import annotations
@@ -41,13 +43,13 @@ from reference.joints import Skate, Slot, Vector
 
 SlotConstruction = Literal["exact", "groove"]
 SkateConstruction = Literal["centre", "point", "projection", "groove"]
-BeforeStep = Callable[[float], None]  # its argument is the duration of the next drift [units of time]
+BeforeStep = Callable[[float], None]  # the argument is the duration of the next drift [units of time]
 AfterStep = Callable[[], None]
 
-# Half the length of a groove relative to the length scale. A slot has no ends, but rounding grows with the length.
+# Half length of a groove relative to the length scale. A slot has no ends, but rounding grows with the length.
 GROOVE_HALF_LENGTH = 1e3
-# Length of the pin joint of a blade relative to the length scale. A long joint turns little in a step, but its rounding
-# is larger.
+# Length of the pin joint of a blade relative to the length scale. A long joint turns little in a step, but rounding is
+# larger.
 LINK_LENGTH = 10.0
 
 
@@ -60,9 +62,9 @@ def build_slot(
     second_point: Vector,
     length: float,
 ) -> tuple[list[Constraint], list[BeforeStep]]:
-    """The constraint and its updates before each step.
+    """The constraint of a slot, and its updates before each step.
 
-    Both points [m] are relative to the origins of the pymunk bodies. `length` [m]: the length scale of the mechanism.
+    Both points [m] are relative to the origins of the pymunk bodies. `length` [m]: length scale of the mechanism.
     """
     is_prescribed = first.body_type != pymunk.Body.DYNAMIC
     if construction == "groove" or (is_prescribed and groove_is_exact(second_point, turns=not isinf(second.moment))):
@@ -80,7 +82,7 @@ def build_slot(
 
 
 def groove_is_exact(point: Vector, turns: bool) -> bool:
-    """Whether every normal is an eigenvector of the inverse mass matrix of a body at a point.
+    """Whether every normal is an eigenvector of a body's inverse mass matrix at a point.
 
     `turns`: whether impulses can turn the body.
     """
@@ -88,7 +90,7 @@ def groove_is_exact(point: Vector, turns: bool) -> bool:
 
 
 class MovedPinJoint:
-    """The pin joint of a Slot or a Skate. The points [m] are relative to the origins of the pymunk bodies."""
+    """The pin joint of a Slot or a Skate; points [m] are relative to the origins of the pymunk bodies."""
 
     def __init__(
         self,
@@ -104,7 +106,7 @@ class MovedPinJoint:
         self.constraint.distance = length
         self._bodies = (first._body, second._body)
         self._point, self._line_point, self._length = second_point, first_point, length
-        # The line of a slot turns with the first body, and a slot has a gap. A blade turns with the second body.
+        # The line of a slot turns with the first body. A blade turns with the second body, and has no gap.
         self._is_slot = isinstance(joint, Slot)
         self._angle = joint.line_angle if isinstance(joint, Slot) else joint.angle
 
@@ -134,10 +136,10 @@ def drifted(body: object, ahead: float) -> tuple[float, float, float]:
 def build_skate(
     joint: Skate, construction: SkateConstruction, first: pymunk.Body, second: pymunk.Body, point: Vector, length: float
 ) -> tuple[list[Constraint], list[BeforeStep], list[AfterStep]]:
-    """The constraints and their updates before and after each step; raises Unsupported.
+    """The constraints of a skate, and updates before and after each step; raises Unsupported.
 
-    `point` [m]: the point of the blade relative to the origin of the second pymunk body. `length` [m]: the length scale
-    of the mechanism.
+    `point` [m]: point of the blade relative to the origin of the second pymunk body. `length` [m]: length scale of the
+    mechanism.
     """
     if construction == "groove" and joint.first is not None:
         link = MovedPinJoint(joint, first, second, point, length=LINK_LENGTH * length)
@@ -154,7 +156,7 @@ def build_skate(
 
 
 def along_blade(joint: Skate) -> float:
-    """The coordinate [m] along the blade of its point, from the centre of mass."""
+    """The distance [m] from the centre of mass to the skate's point, along the blade."""
     return joint.second_point[0] * cos(joint.angle) + joint.second_point[1] * sin(joint.angle)
 
 
@@ -165,8 +167,9 @@ class AimedGroove:
         self.constraint = GrooveJoint(ground, body, (-1.0, 0.0), (1.0, 0.0), anchor)
         self._pointer, self._body = self.constraint._constraint, body._body
         self._angle = joint.angle
-        # The ends of the groove [m] are out of reach in a step. With a power of two, rounding is the same for similar
-        # mechanisms of nearly equal size, and for those whose sizes differ by a power of two.
+        # The body cannot reach the ends [m] of the groove in a step. The length is a power of two, so that similar
+        # mechanisms of nearly equal size have the same rounding. Sizes that differ by a power of two also have the same
+        # rounding.
         half = 2.0 ** (1 + round(log2(length))) + abs(along)
         self._back, self._front = along - half, along + half
 
@@ -182,7 +185,7 @@ class Zeroed:
     def __init__(self, joint: Skate, body: pymunk.Body, construction: SkateConstruction) -> None:
         self._body, self._angle = body._body, joint.angle
         along = along_blade(joint)
-        # The arm [m] of the point whose velocity is measured, and the changes of velocity and rate per m/s across.
+        # _arm [m] leads to the point without slip. _push and _spin are changes of velocity and rate per m/s of slip.
         self._arm, self._push, self._spin = 0.0 if construction == "centre" else along, 1.0, 0.0
         if construction == "projection":
             effective = 1 / (1 / body.mass + along**2 / body.moment)

@@ -17,17 +17,17 @@ from engines.pymunk.reading.script import rewritten, run_script
 from engines.reading import AS_IT_IS, Note, Reading, ReadingTerms, Source, refuse_at_start
 from reference.checks import InvalidMechanism
 
-ASSUMED_STEP = 1 / 60  # s, the step of pymunk's examples
+ASSUMED_STEP = 1 / 60  # step of pymunk's examples [s]
 
 
 def read(
     space: pymunk.Space, step: float | None = None, without: Sequence[str] = (), parts: int = 1, ahead: bool = False
 ) -> Reading:
-    """The mechanism of a space in its present state. Raises Unsupported for an element without an ideal counterpart.
+    """The mechanism of a space in its current state. Raises Unsupported for an element without an ideal counterpart.
 
-    `step` [s]: the step of the user, by default the last step of the space, or else ASSUMED_STEP. `without`: kinds of
-    elements to switch off in a copy. `parts`: the number of steps that a call of `space.step` makes. `ahead`: whether
-    the user's script advances the velocities by half a step at the start.
+    `step` [s]: the user's step, by default the last step of the space, or else ASSUMED_STEP. `without`: kinds of
+    elements to switch off in a copy. `parts`: number of steps in a call of `space.step`. `ahead`: whether the user's
+    script advances the velocities by half a step at the start.
     """
     if without:
         space = space.copy()

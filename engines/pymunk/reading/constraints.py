@@ -1,4 +1,4 @@
-"""The bodies and constraints of a pymunk space as ideal bodies, joints and force elements."""
+"""Read the bodies and constraints of a pymunk space as ideal bodies, joints and force elements."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from reference.joints import Body, Drive, Gear, Joint, Pin, Rod, Slot, Vector
 Array = NDArray[np.float64]
 LIMIT_JOINTS = (constraints.SlideJoint, constraints.RotaryLimitJoint)
 EQUALITY = "its min and max are equal, so it is read as a {}; pymunk's {} is the joint for this"
-# The ends of a limit count as equal up to this difference [rad], which for lengths above 1 m is relative.
+# Largest difference [rad, m] between equal ends of a limit, relative for lengths above 1 m.
 EQUAL_ENDS = 1e-12
 READ_BODIES = {
     "dynamic body": "a body; with an infinite moment, one that turns steadily",
@@ -32,7 +32,7 @@ READ_BODIES = {
 
 @dataclass(eq=False)
 class ImportedSpace:
-    """A space, and the elements of its mechanism. All bodies except those in `moving` belong to the ground."""
+    """A space and the elements of its mechanism; bodies that are not in `moving` belong to the ground."""
 
     space: pymunk.Space
     moving: list[pymunk.Body] = field(default_factory=list)  # in the order of the mechanism
@@ -43,15 +43,15 @@ class ImportedSpace:
     notes: list[Note] = field(default_factory=list)
     names: Names = field(default_factory=Names)
     prescribed: list[str] = field(default_factory=list)  # Names of the joints of prescribed motions.
-    pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # Force and torque by index in `moving`.
-    suspects: dict[str, str] = field(default_factory=dict)  # Reason why a joint is ideal with no step size, by name.
+    pushed: dict[int, tuple[Vector, float]] = field(default_factory=dict)  # Forces and torques by index in `moving`.
+    suspects: dict[str, str] = field(default_factory=dict)  # Reasons by joint why the joint is not ideal at any step.
     labels: dict[constraints.Constraint, str] = field(default_factory=dict)
 
     def name_of(self, body: pymunk.Body) -> str | None:
         return self.body_names.get(body)
 
     def local(self, body: pymunk.Body, point: Vector) -> Vector:
-        """A point of a pymunk body [m], relative to its centre of mass; for the ground, the point in the world."""
+        """A point [m] of a pymunk body relative to the centre of mass; for the ground, the point in the world."""
         if body in self.body_names:
             x, y = body.center_of_gravity
             return (float(point[0] - x), float(point[1] - y))
@@ -67,7 +67,7 @@ class ImportedSpace:
         return float(body.angle) if body in self.body_names else 0.0
 
     def ground_angle(self, body: pymunk.Body) -> float:
-        """The angle in the world [rad] of a body that belongs to the ground; 0 for other bodies."""
+        """The angle [rad] of a body that belongs to the ground; 0 for other bodies."""
         return 0.0 if body in self.body_names else float(body.angle)
 
 
@@ -146,7 +146,7 @@ def _add_push(out: ImportedSpace, body: pymunk.Body) -> None:
 
 def _add_constraint(out: ImportedSpace, constraint: constraints.Constraint, label: str) -> None:
     a, b = constraint.a, constraint.b
-    # A body of the ground need not be in the space.
+    # A body that belongs to the ground need not be in the space.
     if any(_moves(body) and body.space is not out.space for body in (a, b)):
         raise refuse(label, "it holds a body that is not in the space; add the body too")
     if isinstance(constraint, LIMIT_JOINTS) and not is_equality(constraint):
@@ -173,7 +173,7 @@ def _add_slot(out: ImportedSpace, groove: constraints.GrooveJoint, label: str) -
     if not line.length:
         raise refuse(label, "its groove has no length")
     point = out.local(b, groove.anchor_b)
-    # The point of the slot on its line is the projection of the anchor, since the ends of the groove may be far away.
+    # The slot's point on the line is the projection of the anchor, since the ends of the groove may be far away.
     anchor = pymunk.Vec2d(*out.local(a, a.world_to_local(b.local_to_world(groove.anchor_b))))
     along = line.normalized() * (anchor - ends[0]).dot(line.normalized())
     on_line = (float(ends[0][0] + along.x), float(ends[0][1] + along.y))
@@ -209,7 +209,7 @@ def _add_drive(out: ImportedSpace, motor: constraints.SimpleMotor, label: str) -
 
 
 def _add_gear(out: ImportedSpace, gear: constraints.GearJoint, label: str) -> None:
-    # In Chipmunk angle_a = ratio angle_b - phase (preStep in its cpGearJoint.c).
+    # In Chipmunk angle_a = ratio angle_b - phase (preStep in cpGearJoint.c).
     ratio, a, b = float(gear.ratio), out.name_of(gear.a), out.name_of(gear.b)
     if not ratio:
         raise refuse(label, "its ratio is zero")
@@ -229,7 +229,7 @@ def _add_spring(out: ImportedSpace, spring: constraints.DampedSpring, label: str
 def _add_torsion_spring(out: ImportedSpace, spring: constraints.DampedRotarySpring, label: str) -> None:
     if getattr(spring, "_torque_func", None):
         raise refuse(label, "its force is a function of its own")
-    # Chipmunk's relative angle is that of the first body minus that of the second.
+    # In Chipmunk the relative angle is first angle - second angle.
     ends = out.name_of(spring.b), out.name_of(spring.a)
     rest_angle = spring.rest_angle + out.ground_angle(spring.b) - out.ground_angle(spring.a)
     _add_elastic_and_viscous(out, spring, label, ends, (TorsionSpring, TorsionDamper), rest_angle)
@@ -250,7 +250,7 @@ class ConstraintEntry(NamedTuple):
     add: Callable[[ImportedSpace, Any, str], None]
 
 
-# The ideal counterpart of each kind of constraint. Other kinds are refused.
+# Ideal counterparts of constraints. Other kinds of constraints are refused.
 READ_CONSTRAINTS: Mapping[type[constraints.Constraint], ConstraintEntry] = {
     constraints.PivotJoint: ConstraintEntry(
         "a pin", lambda out, pivot, label: out.joints.append(Pin(label, *out.ends(pivot)))
@@ -285,16 +285,16 @@ def both_sided(limit: Any) -> constraints.Constraint:
 def copy_space(imported: ImportedSpace) -> tuple[pymunk.Space, list[pymunk.Body]]:
     """A copy of the space, and the bodies of the copy in the order of the mechanism."""
     original, space = imported.space, imported.space.copy()
-    # `sleepers` reports bodies that may sleep. In the copy none does, since pymunk (7.3.1) may then abort the process.
+    # A sleeping body in the copy may abort the process (pymunk 7.3.1). `sleepers` reports bodies that may sleep.
     space.sleep_time_threshold = inf
     copies = dict(zip(original.bodies, space.bodies, strict=True))
     for body, copy in copies.items():
         if body.center_of_gravity.length:
-            # pymunk (7.3.1) sets the position of a copy before its centre of mass, which then displaces the body.
+            # pymunk (7.3.1) sets the position of a copy before the centre of mass, which then displaces the body.
             copy.angle, copy.position = body.angle, body.position
     for copy, constraint in zip(space.constraints, original.constraints, strict=True):
         if isinstance(constraint, constraints.PinJoint):
-            copy.distance = constraint.distance  # pymunk (7.3.1) gives a copy the present distance of the anchors
+            copy.distance = constraint.distance  # pymunk (7.3.1) sets the distance to its current value
     return space, [copies[body] for body in imported.moving]
 
 

@@ -1,6 +1,6 @@
-"""Runs of a user's pymunk space with its own settings or with others that pymunk documents.
+"""Runs of a user's pymunk space with the user's settings or with other documented settings.
 
-The module also finds obstacles in a motion that the mechanism does not have: contacts, limits and sleep.
+The module also finds contacts, limits and sleep in a motion, which the mechanism does not have.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ from reference.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 MOST_SHAPES = 400
-DIVISORS = (1, 2, 4, 8, 16, 32, 64, 128, 256)  # of the user's step, for `changes`
+DIVISORS = (1, 2, 4, 8, 16, 32, 64, 128, 256)  # divisors of the user's step, for `changes`
 FURTHER_DIVISORS = (*DIVISORS, 512, 1024, 2048, 4096)
 MORE_ITERATIONS = 50
 # Duration of the pilot run for `changes`, relative to the time scale of the mechanism.
 PILOT_DURATION = 10
 # Step for the accelerations at t = 0, relative to the time scale of the mechanism.
 SMALL_STEP = 1e-4
-CONVERGED_ITERATIONS = 20_000  # of that step
+CONVERGED_ITERATIONS = 20_000  # for this step
 
 
 def switch_off(space: pymunk.Space, element: str) -> None:
@@ -59,7 +59,7 @@ def switch_off(space: pymunk.Space, element: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class OwnPymunk:
-    """A space and its mechanism; see `engines.reading.OwnModel`. `dt` [s]: the step of the user."""
+    """A space and its mechanism; see `engines.reading.OwnModel`. `dt` is the user's step [s]."""
 
     imported: ImportedSpace
     mechanism: Mechanism
@@ -68,7 +68,7 @@ class OwnPymunk:
     ahead: bool = False  # The user's script advances the velocities by half a step before the first step.
     engine: str = "pymunk"
     has_soft_joints: bool = False
-    # The violation of joints depends on steps and iterations, and pymunk declares no law for it.
+    # Gaps depend on steps and iterations, and pymunk declares no law for them.
     declares: bool = False
     elements: Sequence[str] = ("contact", "limit")
 
@@ -100,7 +100,7 @@ class OwnPymunk:
         return self.without(None)
 
     def without(self, element: str | None) -> Array:
-        """The accelerations (bodies, 3) at t = 0, extrapolated to step size zero, since a drift precedes the kick."""
+        """The accelerations (bodies, 3) at t = 0, extrapolated to zero step, since a drift precedes the kick."""
         steps = [SMALL_STEP * self.mechanism.time_scale, SMALL_STEP / 2 * self.mechanism.time_scale]
         first, second = (self._kicked(step, element) for step in steps)
         return 2 * second - first
@@ -110,7 +110,7 @@ class OwnPymunk:
         if element is not None:
             switch_off(space, element)
         for limit in [constraint for constraint in space.constraints if is_equality(constraint)]:
-            # A limit acts only after a step that violates it, but the ideal joint acts from t = 0 on.
+            # A limit acts only after a step that violates the limit, but the ideal joint acts from t = 0 on.
             space.remove(limit)
             space.add(both_sided(limit))
         space.iterations = max(space.iterations, CONVERGED_ITERATIONS)
@@ -128,7 +128,7 @@ class OwnPymunk:
         return sorted(met, key=lambda obstacle: obstacle.t)
 
     def changes(self, smallest: float, further: bool = False) -> list[Change]:
-        """The changes to try. Steps correct the whole gap only if they are stable at all poses of the pilot run."""
+        """The changes to try; steps correct the whole gap only if they are stable at all poses of the pilot run."""
         users, increased = self.imported.space.iterations, max(MORE_ITERATIONS, 2 * self.imported.space.iterations)
         rho = worst_factor(self.mechanism, PILOT_DURATION * self.mechanism.time_scale)
         enough = iterations_in_step(rho, max(1, len(self.mechanism.joints)), work=LARGEST_WORK)
@@ -180,7 +180,7 @@ class OwnPymunk:
             if sample == 0:
                 return False
             state, after = _poses(bodies), _twists(bodies)
-            # The kick of a step acts at the pose after its drift, so this is the acceleration at the sample.
+            # The kick acts at the pose after the drift, so the result is the acceleration at the sample.
             acceleration[sample] = (after - before[sample]) / dt
             if np.isfinite(state).all():
                 pose[sample], twist[sample] = state, (before[sample] + after) / 2 if ahead else after
@@ -196,13 +196,13 @@ class OwnPymunk:
         finite = np.isfinite(acceleration).all(axis=(1, 2)) & np.isfinite(pose).all(axis=(1, 2))
         if self.mechanism.row_count and finite.any():
             reaction[finite] = self.mechanism.reaction(pose[finite], acceleration[finite], twist=twist[finite])
-            # pymunk has no force for the joints of a prescribed motion.
+            # pymunk provides no force for joints of a prescribed motion.
             names = [joint.name for joint in self.mechanism.joints for _ in range(joint.size)]
             reaction[:, [name in self.imported.prescribed for name in names]] = np.nan
         return Trajectory(t, pose, twist, reaction, stepping)
 
     def _stepper(self, space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[float], None]:
-        """A function that sets the constant forces and makes a step, which resets them."""
+        """A function that sets the constant forces, which a step resets, and makes a step."""
         pushed = [(bodies[index], *push) for index, push in self.imported.pushed.items()]
         if not pushed:
             return space.step
@@ -241,7 +241,7 @@ def _twists(bodies: Sequence[pymunk.Body]) -> Array:
 
 
 def contacts_and_limits(imported: ImportedSpace, t: Array, pose: Array) -> list[Obstacle]:
-    """The first contact of each pair of shapes and the first reaching of each limit, for poses (times, bodies, 3).
+    """The first contact of each pair of shapes and the first time at each limit, for poses (times, bodies, 3).
 
     Raises Unsupported for more than MOST_SHAPES shapes.
     """
@@ -254,7 +254,7 @@ def contacts_and_limits(imported: ImportedSpace, t: Array, pose: Array) -> list[
     shapes = [shape for shape in space.shapes if not shape.sensor]
     if len(shapes) > MOST_SHAPES:
         raise refuse("the space", f"it has {len(shapes)} shapes; more than {MOST_SHAPES} are not looked at")
-    in_space = set(space.constraints)  # bodies list constraints that are outside the space and have no effect
+    in_space = set(space.constraints)  # constraints outside the space have no effect
     pairs = [pair for pair in itertools.combinations(shapes, 2) if _may_touch(*pair, in_space)]
     limits = [
         (constraint, label)
@@ -278,11 +278,12 @@ def contacts_and_limits(imported: ImportedSpace, t: Array, pose: Array) -> list[
 
 
 def sleepers(imported: ImportedSpace, step: float, t: Array, twist: Array) -> list[Obstacle]:
-    """Bodies that may sleep, for twists (times, bodies, 3): those that are idle for `sleep_time_threshold`.
+    """Bodies that may sleep, since they are idle for `sleep_time_threshold` in twists (times, bodies, 3).
 
-    A body is idle in Chipmunk (cpSpaceProcessComponents) if m v^2 + I w^2 is at most m times the square of a speed. The
-    speed is `idle_speed_threshold`, or, if that is zero, the speed that gravity adds in a step. Chipmunk also requires
-    that the connected bodies are idle. This is not checked here, so more bodies are reported than Chipmunk lets sleep.
+    A body is idle in Chipmunk (cpSpaceProcessComponents) if m v^2 + I w^2 is at most m s^2. The speed s is
+    `idle_speed_threshold`. If the threshold is zero, s is the speed that gravity adds in a step. In Chipmunk, connected
+    bodies must also be idle. This function does not check connected bodies, so it may report more bodies than Chipmunk
+    lets sleep.
     """
     space = imported.space
     if isinf(space.sleep_time_threshold):
@@ -306,7 +307,7 @@ def sleepers(imported: ImportedSpace, step: float, t: Array, twist: Array) -> li
 def _touch(one: pymunk.Shape, other: pymunk.Shape) -> bool:
     try:
         return bool(one.shapes_collide(other).points)
-    except AssertionError:  # pymunk raises it for two shapes at exactly the same pose
+    except AssertionError:  # pymunk raises this for two shapes at exactly the same pose
         return True
 
 

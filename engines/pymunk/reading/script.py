@@ -1,4 +1,4 @@
-"""Scripts that make a pymunk space: execution up to the first step of the space, and changes of its settings."""
+"""Run a script that makes a pymunk space up to the first step, and change the script's settings."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from engines.reading import Change, refuse
 
 SCRIPT_MODULE = "crosscheck_check"  # the script's __name__
 BEGIN, END = "# crosscheck check --apply: these lines are written anew each time", "# crosscheck check --apply: end"
-# Modules that a script shares with this process, even if a file in its folder has the same name.
+# Modules that a script shares with this process, even if a file in the script's folder has the same name.
 SHARED_MODULES = {"pymunk", "builtins", "sys", "os", "__main__"}
 STEP_IN_PARTS = '''
 def in_parts(dt, step={name}.step, space={name}):
@@ -42,11 +42,10 @@ in_parts.parts = {parts}
 class ScriptSpace:
     """The space that a script makes, before its first step.
 
-    `dt` [s]: the argument of the script's calls of `space.step`, or None if it makes none. Each call makes `parts`
-    steps, which is more than one after `rewritten` has divided the steps. `line`: the line before which settings can be
-    inserted; None for the end of the script. `name`: the name at this line of the space, or of the function that makes
-    it. `ahead`: whether the first step is a half step that advances the velocities. The space is in the state before
-    that step.
+    `dt` [s]: argument of the script's calls of `space.step`, or None if there are no calls. `parts`: number of steps in
+    a call; `rewritten` may divide steps. `line`: settings can be inserted before this line; None for the end of the
+    script. `name`: name of the space at this line, or of the function that makes the space. `ahead`: whether the first
+    step is a half step that advances the velocities; the space is then in the state before this step.
     """
 
     space: pymunk.Space
@@ -59,7 +58,7 @@ class ScriptSpace:
 
 
 class _SpaceStepped(BaseException):
-    """The exception that stops a script at the first step of its space, or at the step after a half step."""
+    """Stops a script at the first step of its space, or at the step after a half step."""
 
     def __init__(self, space: Any, dt: float, ahead: bool = False) -> None:
         super().__init__("the script steps its space")
@@ -69,9 +68,9 @@ class _SpaceStepped(BaseException):
 def run_script(path: Path, file: str, name: str) -> ScriptSpace:
     """The space that a script calls `name`, or that a function of this name returns; "" for the only space.
 
-    The script is stopped before it steps that space, and its output is discarded. If joints correct their whole gap,
-    the first step may be a half step that advances the velocities. The script is then run again up to the second step.
-    If this step is twice as long as the first one, the first one is such a half step. Raises ValueError in one line.
+    The script ends before it steps the space, and its output is discarded. If joints correct the whole gap, the first
+    step may be a half step that advances the velocities. The script is then run again up to the second step. If the
+    second step is twice as long, the first step is a half step. Raises ValueError in one line.
     """
     script = _run_script(path, file, name)
     if script.dt is None or not any(joint.error_bias == 0 for joint in script.space.constraints):
@@ -84,7 +83,7 @@ def run_script(path: Path, file: str, name: str) -> ScriptSpace:
 
 
 def _run_script(path: Path, file: str, name: str, half: float | None = None) -> ScriptSpace:
-    """Run a script once. With `half`, the script continues after its first step, whose length [s] is `half`."""
+    """Run a script once. With `half` [s], the script continues after a first step of this length."""
     module = types.ModuleType(SCRIPT_MODULE)
     module.__file__ = str(path)
     try:
@@ -92,7 +91,7 @@ def _run_script(path: Path, file: str, name: str, half: float | None = None) -> 
             _as_main_script(path, module),
             _stopped_at_step(lambda space: _is_wanted(space, module, name), half) as first,
         ):
-            # Without a name, the space may be in the part of the script that runs only as the main program.
+            # The space may be in the part of the script that runs only as the main program.
             for module_name in (SCRIPT_MODULE,) if name else (SCRIPT_MODULE, "__main__"):
                 module.__dict__["__name__"] = module_name
                 with _errors_in_one_line(path, file):
@@ -117,14 +116,14 @@ def _run_script(path: Path, file: str, name: str, half: float | None = None) -> 
 
 
 def _with_parts(script: ScriptSpace) -> ScriptSpace:
-    """Remove `step` from the attributes of the space, since in a copy of the space it would step the original."""
+    """Remove an attribute `step` of the space, since a copy of the space would step the original by it."""
     step = vars(script.space).pop("step", None)
     return replace(script, parts=int(getattr(step, "parts", 1)))
 
 
 @contextlib.contextmanager
 def _errors_in_one_line(path: Path, file: str) -> Iterator[None]:
-    """Replace every error of the user's code by a ValueError with a message of one line."""
+    """Replace every exception of the user's code by a ValueError with a message of one line."""
     try:
         yield
     except _SpaceStepped:
@@ -140,7 +139,7 @@ def _errors_in_one_line(path: Path, file: str) -> Iterator[None]:
 
 
 def _value_of(module: types.ModuleType, file: str, name: str) -> tuple[Any, str]:
-    """The value with this name in a module, or its only space if `name` is empty; and the name of the value."""
+    """The value `name` in a module, or the only space if `name` is empty, and the name of the value."""
     values = vars(module)
     if name:
         if name not in values:
@@ -164,8 +163,8 @@ def _spaces(module: types.ModuleType) -> dict[str, pymunk.Space]:
 def _as_main_script(path: Path, module: types.ModuleType) -> Iterator[None]:
     """Set the working folder, the arguments and the import path as `python script.py` does, and discard the output.
 
-    Modules with the same name as a file in the folder of the script are removed from sys.modules meanwhile, so that
-    the script imports that file.
+    If a module has the name of a file in the script's folder, it is temporarily removed from sys.modules, so that the
+    script imports the file.
     """
     folder, arguments, paths = os.getcwd(), sys.argv, list(sys.path)
     files, packages = path.parent.glob("*.py"), path.parent.glob("*/__init__.py")
@@ -188,11 +187,11 @@ def _as_main_script(path: Path, module: types.ModuleType) -> Iterator[None]:
 
 @dataclass
 class _FirstStep:
-    """The velocities before the first step of a space, which may be a half step that advances them."""
+    """The velocities before the first step of a space, which may be a half step that advances the velocities."""
 
     space: Any = None
     velocities: tuple[tuple[Any, float], ...] = ()
-    by_lines: bool = False  # whether the calling code moves the bodies back, or replaces their position function
+    by_lines: bool = False  # whether the script moves the bodies back, or replaces their position function
 
     def begin(self, space: Any, names: Sequence[str]) -> None:
         self.space, bodies = space, list(space.bodies)
@@ -207,9 +206,10 @@ class _FirstStep:
 
 @contextlib.contextmanager
 def _stopped_at_step(is_wanted: Callable[[Any], bool], half: float | None) -> Iterator[_FirstStep]:
-    """Make the first step of a wanted space raise _SpaceStepped. Copies of a space make their steps.
+    """Make the first step of a wanted space raise _SpaceStepped; copies of the space are stepped.
 
-    With `half`, the second step raises it. A first step that is half as long is then undone.
+    With `half`, the second step raises the exception. If the first step is half as long as the second step, it is
+    undone.
     """
     original_step, original_copy = pymunk.Space.step, pymunk.Space.copy
     copies: list[pymunk.Space] = []
@@ -254,8 +254,8 @@ def _is_wanted(space: pymunk.Space, module: types.ModuleType, name: str) -> bool
 def _name_and_line(path: Path, name: str, stop: _SpaceStepped) -> tuple[str, int | None]:
     """The name of the space that was stepped, and the line of the statement that steps it.
 
-    Both are those in the outermost function on the call stack that has a name for the space; ("", None) without such a
-    function.
+    The name and line are taken from the outermost function on the call stack that has a name for the space. Without
+    such a function, the result is ("", None).
     """
     trace: TracebackType | None = stop.__traceback__
     while trace is not None:
@@ -269,7 +269,7 @@ def _name_and_line(path: Path, name: str, stop: _SpaceStepped) -> tuple[str, int
 
 
 def _function_body(tree: ast.Module, function: str, line: int) -> list[ast.stmt]:
-    """The statements of the innermost function of this name that contains a line; without one, those of the module."""
+    """The statements of the innermost function of this name that contains a line, or else of the module."""
     functions = [
         node
         for node in ast.walk(tree)
@@ -289,10 +289,10 @@ def _main_guard(path: Path) -> int | None:
 
 
 def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> bytes:
-    """The script with other settings, which are inserted before the first step of its space.
+    """The script with other settings, which are inserted before the first step of the space.
 
-    `step` [s]: the present step. Lines that an earlier call inserted are replaced. Raises Unsupported if the space has
-    no name, or if the user's own lines advance the velocities by half a step.
+    `step` [s]: current step. Lines that an earlier call inserted are replaced. Raises Unsupported if the space has no
+    name, or if the user's lines advance the velocities by half a step.
     """
     if not script.name:
         raise refuse(
@@ -323,7 +323,7 @@ def rewritten(path: Path, script: ScriptSpace, step: float, change: Change) -> b
 def _setting_lines(script: ScriptSpace, step: float, change: Change, has_earlier: bool) -> list[str]:
     options = dict(change.options)
     bias = options["bias"]
-    if has_earlier and bias is None:  # the present error_bias may come from the lines that are replaced
+    if has_earlier and bias is None:  # the current error_bias may come from lines that are replaced
         bias = next(iter({joint.error_bias for joint in script.space.constraints}), None)
     name = "space" if script.is_function else script.name
     settings = [f"{name}.iterations = {options['iterations']}"]
