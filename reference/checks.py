@@ -3,8 +3,8 @@
 A frozen dataclass that inherits from `Valid` checks its fields when it is made. A function with `validated` checks its
 arguments when it is called. Both raise InvalidMechanism, a ValueError, with a sentence that states which value is
 wrong, why, and which values are valid. Numpy's numbers become Python's; lists and arrays become tuples or arrays of
-floats, as declared. So equal settings have equal reprs. Relations between values (lengths that assemble) are checked by
-the class itself. `reference.validators` has the validators.
+floats, as declared. Equal settings have equal reprs then. Relations between values (lengths that assemble) are checked
+by the class itself. The validators are in `reference.validators`.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def validated(function: Function) -> Function:
-    """Check a function's arguments by their annotations before it runs; the object of a method is not checked.
+    """Check a function's arguments by the annotations before each call; the object of a method is not checked.
 
     Functions that users call are validated; loops call unchecked functions.
     """

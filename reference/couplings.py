@@ -23,10 +23,10 @@ AnyArray = NDArray[Any]
 class Term(Valid):
     """`factor` times a relative coordinate of two bodies.
 
-    The coordinate is the second body's angle minus the first body's angle [rad], not wrapped. If `sliding`, it is the
-    position [m] of `second_point` of the second body along a line in the first body. The line passes through
-    `first_point` at `line_angle` [rad]. Points [m] are in the bodies' own frames, from the centre of mass; on the
-    ground (None) they are world coordinates.
+    The coordinate is the second body's angle minus the first body's angle [rad], not wrapped. If `sliding`, the
+    coordinate is the position [m] of `second_point` of the second body along a line in the first body. The line passes
+    through `first_point` at `line_angle` [rad]. Points [m] are in the body's frame, from the centre of mass; points on
+    the ground (None) are world coordinates.
     """
 
     holonomic: ClassVar[bool] = True
@@ -95,7 +95,7 @@ class Coupling(OfTerms, JointElement):
     Examples are gear trains and mimic joints with terms of hinge angles, and a rack and pinion or a screw with a
     sliding term and an angle. Row: the rate of the sum. Reaction: the generalised force along the sum, which is a force
     [N] if the first term is sliding, otherwise a torque [N m]. Each body gets the reaction times the derivative of the
-    sum by its coordinates. The bearings carry the remaining forces, as for a `Gear`.
+    sum by the body's coordinates. The bearings carry the remaining forces, as for a `Gear`.
     """
 
     offset: float = 0.0

@@ -1,7 +1,7 @@
 """Properties of joints and force elements, with which tools can use an element without knowing its class.
 
-An element has `name`; `first` and `second` are names of bodies, or None for the ground. Points [m] are in the bodies'
-own frames, from the centre of mass; points on the ground are world coordinates.
+An element has a `name`. The names `first` and `second` are those of bodies, or None for the ground. Points [m] are in
+the bodies' own frames, from the centre of mass; points on the ground are world coordinates.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Element(Valid):
 
     @property
     def points(self) -> tuple[Place, ...]:
-        """The points that define the element, with those of the first body first."""
+        """The points that define the element, in the order of the bodies."""
         return ()
 
     @property

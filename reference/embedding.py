@@ -6,7 +6,7 @@ Fufaev)
 
 T^T M T nu' = T^T (f - M T' nu).
 
-T is derived by hand for each mechanism. Its rate T' is computed by a complex step along the motion, which is exact. The
+T is derived by hand for each mechanism. The rate T' is computed by a complex step along the motion, which is exact. The
 motion does not use the joints' rows, so it checks the rows independently.
 """
 
@@ -32,14 +32,14 @@ class EmbeddedScene(PlacedScene):
     @property
     @abstractmethod
     def start(self) -> Array:
-        """c and nu at t = 0 (states,)."""
+        """The state (states,) at t = 0: c, then nu."""
 
     @abstractmethod
     def tangent(self, coordinates: Any) -> tuple[Any, Any]:
         """Poses (..., bodies, 3) and T (..., 3 bodies, freedoms) at c (..., coordinates), analytic in c."""
 
     def coordinate_rates(self, coordinates: NDArray[Any], velocities: NDArray[Any]) -> NDArray[Any]:
-        """c' (..., coordinates) at c and nu."""
+        """The rates c' (..., coordinates) at c and nu."""
         return velocities
 
     @property
@@ -49,7 +49,7 @@ class EmbeddedScene(PlacedScene):
 
     @property
     def angle_unit(self) -> float:
-        """The unit of the coordinates [rad or m]; the integration's tolerance is relative to it."""
+        """The unit of the coordinates [rad or m], to which the integration's tolerance is relative."""
         return 1.0
 
     def _split(self, state: Array) -> tuple[Array, Array]:
@@ -81,7 +81,7 @@ class EmbeddedScene(PlacedScene):
         return self.embedded(coordinates, velocities)[0]
 
     def rates(self, state: Array) -> Array:
-        """d/dt of (c, nu) (..., states)."""
+        """The rates (..., states) of (c, nu)."""
         coordinates, velocities = self._split(state)
         moved = self.coordinate_rates(coordinates, velocities)
         return np.concatenate([moved, self.accelerations(coordinates, velocities)], axis=-1)

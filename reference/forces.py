@@ -1,10 +1,10 @@
 """The force elements: springs, dampers, constant forces and torques.
 
-`FORCES` has every class. Besides the properties of `elements.Element`, an element has two functions of the poses and
-twists of its two bodies (..., 3), which are zero for the ground. `on(first, second, first_twist, second_twist)` is the
-generalised force (..., 6) [N, N, N m] on x, y and angle of the first body, then of the second. `potential(first,
-second)` (...) [J] is the potential energy; without damping, `on` is its negative derivative. Both functions are
-analytic, so they can be differentiated by a complex step.
+The tuple `FORCES` has all classes. Besides the properties of `elements.Element`, an element has two functions of the
+poses and twists of its two bodies (..., 3), which are zero for the ground. `on(first, second, first_twist,
+second_twist)` is the generalised force (..., 6) [N, N, N m] on x, y and angle of the first body, then of the second.
+`potential(first, second)` (...) [J] is the potential energy; without damping, `on` is its negative derivative. Both
+functions are analytic, so they can be differentiated by a complex step.
 """
 
 from __future__ import annotations
@@ -234,9 +234,10 @@ class CoupledForce(OfTerms, ForceFacts):
     """A tendon over several joints: the force along the sum of `terms` is force - stiffness * (sum - rest) - damping *
     rate.
 
-    `rate` is the rate of the sum. If the sum is a length, the units are N, N/m, N s/m and m; otherwise N m, N m/rad, N
-    m s/rad and rad. Each body gets the force times the derivative of the sum by its coordinates. The functions of this
-    class have the poses and twists of all bodies as arguments, with the ground last.
+    `rate` is the rate of the sum. The units of force, stiffness, damping and rest are N, N/m, N s/m and m, or N m, N
+    m/rad, N m s/rad and rad if the sum is an angle. Each body gets the force times the derivative of the sum by the
+    body's coordinates. The functions of this class have the poses and twists of all bodies as arguments, with the
+    ground last.
     """
 
     unit_exponents: ClassVar[UnitExponents] = {

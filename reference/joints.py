@@ -1,9 +1,9 @@
 """Rigid bodies, and the joints between two bodies or between a body and the ground.
 
-A joint is defined by its gap, which is zero if the joint is satisfied, and by velocity rows J with J v = rate. `JOINTS`
-has every class. New classes must be needed by a scene and implemented in `engines.lagrange`.
+A joint is defined by its gap, which is zero if the joint is satisfied, and by velocity rows J with J v = rate. The
+tuple `JOINTS` has all classes. New classes must be needed by a scene and implemented in `engines.lagrange`.
 
-Besides the properties of `elements.JointElement`, a joint has `labels`, the names of its `size` rows. It has two
+Besides the properties of `elements.JointElement`, a joint has `labels`, the names of its `size` rows. A joint has two
 functions of the poses (..., 3) of its two bodies, with the pose zero for the ground. `gap(first, second, t)` has the
 shape (..., size). `rows(first, second)` has the shape (..., size, 6): its columns are x, y and angle of the first body,
 then of the second. Rows are analytic functions, so they can be differentiated by a complex step. The reaction of a row
@@ -194,7 +194,7 @@ class Rod(_JointOfTwo):
     """A massless rigid rod: the distance between a point of each body is `length` [m].
 
     Row: the rate of the distance [m/s]. Reaction: force on the second body [N] in the direction from the first point to
-    the second; it is positive if the rod pushes.
+    the second, positive if the rod pushes.
     """
 
     labels: ClassVar[tuple[str, ...]] = ("along",)

@@ -143,7 +143,7 @@ class Mechanism(Valid):
     def potential(self, pose: States) -> NDArray[Any]:
         """Potential energy (...) [J] of gravity, springs, constant forces and torques at poses (..., bodies, 3).
 
-        Zero: bodies at the world's origin, springs at their rest length, bodies with a torque at equal angles.
+        The zero is at the world's origin for bodies, at the rest length for springs, and at equal angles for torques.
         """
         of_gravity = -np.sum(self.inertias * self.free_fall * pose, axis=(-2, -1))
         return of_gravity + self.applied.potential(pose) if self.forces else of_gravity

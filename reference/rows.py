@@ -2,7 +2,7 @@
 
 The magnitude of a row depends on the unit of length, so ranks are computed for rows without units. The product J M^-1
 J^T squares the condition number of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without the
-product. For many rows the product is used, since it has a narrow band; one step of refinement follows.
+product. For many rows J M^-1 J^T is used, since its band is narrow, and one step of refinement follows.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
     inverse = np.where(small, 0.0, 1 / np.where(small, 1.0, singular))
     target = np.where(finite[..., None], excess, 0.0) * root
     solution = scale * _times(np.swapaxes(right, -1, -2), inverse * _times(np.swapaxes(left, -1, -2), target))
-    missing = rows.shape[-2] - singular.shape[-1]  # if positive, rows are dependent
+    missing = rows.shape[-2] - singular.shape[-1]  # dependent if positive
     if missing > 0 or np.any(small & finite[..., None]):
         solution = _smallest(solution, scale, matrix, size)
     return np.where(finite[..., None], solution, np.nan)
@@ -111,7 +111,7 @@ def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Arra
     padded = np.zeros((*singular.shape[:-1], count))
     padded[..., : singular.shape[-1]] = singular
     idle = padded <= RANK_TOLERANCE * singular[..., :1]
-    # Columns that span the null space of rows^T, in units of `size`; the other columns are zero.
+    # Columns that span the null space of rows^T in units of `size`, and columns of zeros.
     basis = (scale / size)[..., :, None] * np.swapaxes(right, -1, -2) * idle[..., None, :]
     measured = solution / size
     weights = _times(np.linalg.pinv(basis, rcond=RANK_TOLERANCE), measured)
@@ -250,12 +250,12 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
     """Reactions (times, rows) [N, N m] at poses (times, bodies, 3), or NaN at times with dependent rows.
 
     `excess` (times, bodies, 3) is the acceleration minus free fall. `inertias` (bodies, 3) is the diagonal of the mass
-    matrix M. The equation is J M^-1 J^T reactions = J excess. The matrix is sparse; it is reordered to a narrow band
-    (reverse Cuthill-McKee) and factorised by Cholesky. The cost for a chain is O(bodies), compared with O(bodies^3) for
-    the dense system.
+    matrix M. The equation is J M^-1 J^T reactions = J excess. The sparse matrix is reordered to a narrow band (reverse
+    Cuthill-McKee) and factorised by Cholesky. The cost for a chain is O(bodies), compared with O(bodies^3) for the
+    dense system.
     """
     everything, count = joint_rows.with_ground(pose), joint_rows.count
-    blocks = [group.blocks(everything) for group in joint_rows.groups]  # (times, joints, size, 6) each
+    blocks = [group.blocks(everything) for group in joint_rows.groups]
     places = [group.places() for group in joint_rows.groups]
     row, column = (np.concatenate([pair[k].ravel() for pair in places]) for k in (0, 1))
     values = np.concatenate([block.reshape(len(pose), -1) for block in blocks], axis=1)
@@ -272,7 +272,7 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
         lower = product.row >= product.col
         below, at = (product.row - product.col)[lower], product.col[lower]
         band = np.zeros((int(below.max()) + 1, count))
-        band[below, at] = product.data[lower]  # LAPACK's lower band storage
+        band[below, at] = product.data[lower]  # for LAPACK
         factor, solution, failed = dpbsv(band, rows @ target, lower=1)
         if failed or not factor[0].min() ** 2 > SMALLEST_PIVOT * factor[0].max() ** 2:
             continue

@@ -117,7 +117,7 @@ class Scene(Valid, ABC):
     def _refuse_not_finite(self, motion: Trajectory) -> None:
         """Raise OverflowError for numbers that are not finite; unknown reactions are NaN.
 
-        The squares of velocities must be finite too, since energies and accelerations contain them.
+        The squares of velocities must be finite, since energies and accelerations contain these squares.
         """
         for name, numbers, finite in (
             ("poses", motion.pose, np.isfinite),

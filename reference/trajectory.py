@@ -90,7 +90,7 @@ class Trajectory(Valid):
     unresolved_at [s] is the time after which the estimate exceeds the method's claim.
     """
 
-    _copies: ClassVar[bool] = False  # arrays may be large, and no cached result depends on them
+    _copies: ClassVar[bool] = False  # arrays may be large
 
     t: Annotated[Array, of_shape("times")]
     pose: Annotated[Numbers, of_shape("times", "bodies", 3)]
@@ -103,7 +103,7 @@ class Trajectory(Valid):
     unresolved_at: float | None = None
 
     def warnings_of(self, kind: WarningKind) -> tuple[RunWarning, ...]:
-        """The warnings of one kind."""
+        """The warnings of this kind."""
         return tuple(warning for warning in map(RunWarning.of, self.warnings) if warning.kind == kind)
 
     @property
@@ -131,7 +131,7 @@ class Trajectory(Valid):
 
 @validated
 def energy(mechanism: Mechanism, trajectory: Trajectory) -> Array:
-    """Kinetic energy plus `Mechanism.potential` (times,) [J].
+    """The kinetic energy plus `Mechanism.potential` (times,) [J].
 
     The energy is constant without drives and dampers.
     """

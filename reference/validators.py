@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Rule:
-    """A further condition on a value. In messages its words follow the words for the value's type."""
+    """A further condition on a value. In messages, `words` follow the words for the value's type."""
 
     predicate: Callable[[Any], Any]
     words: str

@@ -17,7 +17,7 @@ from reports.model.page import Page
 from reports.model.tasks import Answer, Task, answered
 from tests import RESULTS
 
-KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # annotations of that module are strings
+KINDS: Mapping[str, Any] = {"int": int, "float": float, "str": str}  # as strings
 
 
 def _lines(name: str) -> list[dict[str, str]]:

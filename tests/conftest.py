@@ -67,7 +67,7 @@ def at_home(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(cluster, "pool", lambda workers: cluster.Workforce(1, in_process))
     monkeypatch.setattr(worker, "start_early", lambda *modules: None)
-    monkeypatch.setattr(supervisor, "supervise", in_process)  # functions that import it when they are called
+    monkeypatch.setattr(supervisor, "supervise", in_process)  # imported when called
     monkeypatch.setattr(walk, "supervise", in_process)
 
 

@@ -48,7 +48,7 @@ def four_bar(crank_rate: float = 0.0, drive: float | None = None) -> Mechanism:
         bar("coupler", b, c, velocity=(-0.4 * crank_rate, 0.0), rate=-crank_rate / 2),
         bar("rocker", d, c, rate=crank_rate / 4),
     )
-    half = [body.mass / 2 for body in bodies]  # 1 kg/m, so mass equals length
+    half = [body.mass / 2 for body in bodies]  # 1 kg/m
     joints: tuple[Joint, ...] = (
         Pin("A", None, "crank", (0.0, 0.0), (-half[0], 0.0)),
         Pin("B", "crank", "coupler", (half[0], 0.0), (-half[1], 0.0)),

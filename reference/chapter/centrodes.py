@@ -83,7 +83,7 @@ class Centrodes(Valid):
 
     @cached_property
     def body_curve(self) -> Traced:
-        """The moving curve B, traversed against the motion of the contact, as `Rolling` defines it."""
+        """The moving curve B, traversed against the motion of the contact."""
         return Traced(-self.theta[::-1], self.body[::-1])
 
     @property
@@ -103,12 +103,12 @@ class Centrodes(Valid):
 
     @property
     def body_arc(self) -> Array:
-        """Arc length (n,) [m] of the contact on B in its direction of motion, which equals `space_arc`."""
+        """Arc length (n,) [m] of the contact on B, which equals `space_arc`."""
         return self.body_curve.limits[1] - self.body_curve.arc_of(-self.theta)
 
     @property
     def rate(self) -> Array:
-        """ds/dtheta (n,) [m/rad] from the path of the centre; it equals 1 / (curvature_A + curvature_B)."""
+        """ds/dtheta (n,) [m/rad] from the path of the centre, which equals 1 / (curvature_A + curvature_B)."""
         return self.space_curve.speed_of(self.theta)
 
     def rolling(self) -> Rolling:

@@ -105,8 +105,8 @@ def rolling_acceleration() -> Values:
         return (fixed + rolling) * np.stack([np.cos(psi), np.sin(psi)])
 
     psi = theta * rolling / (fixed + rolling)
-    normal = np.array([math.cos(psi), math.sin(psi)])  # Into the rolling body.
-    arm = rolling * normal  # From the contact to the centre.
+    normal = np.array([math.cos(psi), math.sin(psi)])  # Into the circle.
+    arm = rolling * normal
     pinned = alpha * np.array([-arm[1], arm[0]]) - omega**2 * arm
     term = omega**2 / (1 / fixed + 1 / rolling) * normal
     return Values(pinned - term, pinned + term, derivative(centre, 0.0, order=2))
@@ -124,7 +124,7 @@ def bar_end(t: Any, bar: int) -> Any:
 
 @dataclass(frozen=True)
 class BarState:
-    """One bar of `length` [m]: its angle [rad] from the downward vertical, rate [rad/s], acceleration [rad/s^2]."""
+    """One bar with length [m], angle [rad] from the downward vertical, rate [rad/s] and acceleration [rad/s^2]."""
 
     length: float
     angle: float

@@ -51,7 +51,7 @@ def null_space(rows: Annotated[Array, of_shape("rows", "coordinates")]) -> Array
 def exterior_derivatives(rows: Rows, place: Place) -> Array:
     """dw_i = d_j w_ik - d_k w_ij (rows, coordinates, coordinates) of the one-forms w_i at a place, by complex step."""
     shifted = place + 1j * COMPLEX_STEP * np.eye(len(place))
-    # slope (rows, coordinate j, component k)
+    # (rows, j, k)
     slope = np.stack([np.imag(rows(shifted_place)) / COMPLEX_STEP for shifted_place in shifted], axis=1)
     return slope - np.swapaxes(slope, 1, 2)
 
@@ -104,7 +104,7 @@ def _fields(rows: Rows, place: Place) -> list[Rows]:
     def projected(motion: Array) -> Rows:
         def field(at: NDArray[Any]) -> NDArray[Any]:
             forms = rows(at)[..., independent, :]
-            square = forms @ np.swapaxes(forms, -1, -2)  # not conjugated, since it must be analytic
+            square = forms @ np.swapaxes(forms, -1, -2)  # analytic, not conjugated
             correction = np.swapaxes(forms, -1, -2) @ np.linalg.solve(square, (forms @ motion)[..., None])
             return motion - correction[..., 0]
 
@@ -141,7 +141,7 @@ def growth(rows: Rows, place: Place) -> tuple[int, ...]:
 
 
 def _extended_basis(basis: Array, vectors: list[Array]) -> Array:
-    """An orthonormal basis (coordinates, dimension), extended by the vectors that it does not span."""
+    """An orthonormal basis (coordinates, dimension) of the space of a basis and more vectors."""
     for vector in vectors:
         rest = vector - basis @ (basis.T @ vector)
         rest -= basis @ (basis.T @ rest)
@@ -186,7 +186,7 @@ def freedoms_by_brackets(mechanism: Mechanism, pose: Pose | None = None) -> tupl
     """The `growth` of a mechanism's freedoms from velocity freedoms to configuration freedoms; time is not counted.
 
     This is a check of `Mechanism.degrees_of_freedom`, since it does not use `holonomic`. A car with locked steering has
-    one freedom of velocity and follows one curve, so its skates are integrable together. `degrees_of_freedom` counts
+    one freedom of velocity and follows one curve, so the skates are integrable together. `degrees_of_freedom` counts
     four freedoms of configuration for this car, by the classes of its joints.
     """
     dimensions = growth(mechanism_rows(mechanism), mechanism_place(mechanism, pose))

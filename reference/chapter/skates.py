@@ -2,9 +2,9 @@
 
 A linear condition on a body's velocity that is the same at every position and direction is a u + b v + c theta' = 0
 with constants a, b, c. Here u, v [m/s] is the velocity of the centre of mass along the body's axes. If (a, b) = 0, the
-condition is theta' = 0, which is integrable. Otherwise the condition is a skate: by division by |(a, b)| it prescribes
-the velocity zero of a point P along the blade's left normal n = (a, b) / |(a, b)|. P is any point with dot(n, k x P) =
-c / |(a, b)|. Then w . curl w = -(a^2 + b^2) < 0, so it is not integrable.
+condition is theta' = 0, which is integrable. Otherwise the condition is a skate: a point P has no velocity along the
+blade's left normal n = (a, b) / |(a, b)|. P is any point with dot(n, k x P) = c / |(a, b)|. The skate is not
+integrable, since dot(w, curl w) = -(a^2 + b^2) < 0.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def frobenius(row: BodyRow, place: Place) -> float:
 def coriolis_factors(speed: float, rate: float, angular_acceleration: float = 0.0) -> tuple[float, float]:
     """The factors of v theta' in the acceleration across v, for a skate's point and for a slider.
 
-    The speed v [m/s] and the rate theta' [rad/s] are not zero. The skate's point moves at v along i' of its own body,
+    The speed v [m/s] and the rate theta' [rad/s] are not zero. The skate's point moves at v along the body's axis i',
     and only i' rotates. A slider at the same position moves at v along i' of a rotating body: both i' and the arm
     rotate, and the arm grows. Both factors are numerical derivatives, so that no formula is assumed.
     """

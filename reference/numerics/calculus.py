@@ -26,7 +26,7 @@ _TO_COEFFICIENTS = (2.0 / PANEL_POINTS) * np.cos(
     np.outer(np.arange(PANEL_POINTS), np.pi * (np.arange(PANEL_POINTS) + 0.5) / PANEL_POINTS)
 )
 _TO_COEFFICIENTS[0] /= 2
-_INTEGRATE = np.polynomial.chebyshev.chebint(np.eye(PANEL_POINTS), lbnd=-1)  # (PANEL_POINTS + 1, PANEL_POINTS)
+_INTEGRATE = np.polynomial.chebyshev.chebint(np.eye(PANEL_POINTS), lbnd=-1)
 
 
 def _series_at(series: NDArray[Any], place: NDArray[np.float64]) -> NDArray[Any]:

@@ -144,7 +144,7 @@ def integrate(
     """
     rule = rule_of(stages)
     position, speed = (np.asarray(state, dtype=np.longdouble) for state in (angle, rate))
-    compensation = np.zeros((2, len(position)), dtype=np.longdouble)  # rounding of the sums (Kahan)
+    compensation = np.zeros((2, len(position)), dtype=np.longdouble)  # Kahan's summation
     start = accelerations(position[None], speed[None])
     pace = max(float(np.abs(speed).max()), math.sqrt(float(np.abs(start).max())))  # rad/s
     now, length = 0.0, min(until, FIRST_WINDOW / pace) if pace > 0 else until
@@ -191,8 +191,8 @@ def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarse
     """The motion up to `until` [s] from a start of n angles and n rates, with `rates` in double precision.
 
     Returns a function from times (times,) to states (times, 2 n). The method is collocation, or the explicit method of
-    `integration` if collocation needs many windows. unit (2 n,): see `integration.integrate`. `coarser` is a factor on
-    the tolerance; a value other than 1 also selects the rule with COARSE_STAGES. Raises IntegrationFailed.
+    `integration` if collocation needs many windows. `integration.integrate` explains unit (2 n,). `coarser` is a factor
+    on the tolerance; a value other than 1 also selects the rule with COARSE_STAGES. Raises IntegrationFailed.
     """
     state = np.asarray(start, dtype=float)
     half = len(state) // 2
@@ -232,7 +232,7 @@ def _solve_window(
     unit: float,
     tolerance: float,
 ) -> tuple[Extended | None, int]:
-    """The accelerations at the nodes (stages, n), None for a too long window, and the number of iterations."""
+    """The accelerations at the nodes (stages, n), or None if the window is too long, and the number of iterations."""
     straight = angle + length * rule.matrix.sum(axis=1)[:, None] * rate
     nodal, smallest = guess, math.inf
     for iteration in range(1, MOST_ITERATIONS + 1):

@@ -27,8 +27,8 @@ def solve_increasing(
 ) -> Array:
     """The roots x (...) of function(x) = target (...), with errors of a few roundings of max(|x|, scale).
 
-    `function` returns its values (...) and slopes (...). It must increase within `limits` and is evaluated only there;
-    x is clipped to them. Raises ArithmeticError if a target is out of reach or not finite.
+    `function` returns its values (...) and slopes (...). The function must increase within `limits` and is evaluated
+    only there; x is clipped to the limits. Raises ArithmeticError if a target is out of reach or not finite.
     """
     target = np.asarray(target, dtype=float)
     x = np.clip(np.array(np.broadcast_to(np.asarray(guess, dtype=float), target.shape)), *limits)

@@ -28,7 +28,7 @@ class Ellipse(Curve):
     """(a cos u, b sin u) [m] with the natural parameter u, counter-clockwise; semi-axes `along_x` = a, `along_y` = b.
 
     Arc 0 is the point (a, 0), where the tangent angle is pi/2. Arc = b E(u | 1 - a^2/b^2). The incomplete integral is
-    evaluated within half a turn only, so that its relative error does not grow with the turns.
+    evaluated within half a turn only, so that the relative error does not grow with the number of turns.
     """
 
     along_x: Positive
@@ -96,7 +96,7 @@ class Ellipse(Curve):
         index = np.clip(np.searchsorted(arcs, rest) - 1, 0, GUESSES - 2)
         width, part = arcs[index + 1] - arcs[index], rest - arcs[index]
         x = np.clip(part / width, 0.0, 1.0)
-        first, second = width / speeds[index], width / speeds[index + 1]  # slopes at both ends of the interval
+        first, second = width / speeds[index], width / speeds[index + 1]  # slopes
         step = u[1] - u[0]
         return u[index] + x * (first + x * (3 * step - 2 * first - second + x * (first + second - 2 * step)))
 
@@ -130,9 +130,9 @@ class Cam(Curve):
 
     and nu is the natural parameter.
 
-    The first terms shift the cam (cosines=(e,) is a disc with eccentricity e); the second terms make it oval, the third
-    terms three-lobed. The radius of curvature is h + h'', and the arc is the integral of h + h''. The normal points to
-    +x at arc 0. Raises InvalidMechanism if the radius of curvature is not positive everywhere.
+    The first terms shift the cam (cosines=(e,) is a disc with eccentricity e); the second terms make the cam oval, and
+    the third terms make it three-lobed. The radius of curvature is h + h'', and the arc is the integral of h + h''. The
+    normal points to +x at arc 0. Raises InvalidMechanism if the radius of curvature is not positive everywhere.
     """
 
     radius: Positive

@@ -53,8 +53,8 @@ class Contact:
         return (self.ground_curvature + self.body_curvature) / largest
 
 
-# Smallest conformality that is allowed. The error of the contact is proportional to the inverse of the conformality. At
-# this value about seven of the sixteen digits of a double are accurate.
+# Smallest allowed conformality of a contact. The error of the contact is proportional to the inverse of the
+# conformality. At this value about seven of the sixteen digits of a double are accurate.
 NEAR_CONFORMAL = 1e-9
 # Number of points of a closed curve at which conformality and overlap are checked.
 SCAN = 721
@@ -78,7 +78,7 @@ def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, en
     def free(arc: ArrayLike) -> Array:
         on_body = body.curvature_of(body.parameter(arc))
         on_ground = ground.curvature_of(ground.parameter(total - np.asarray(arc)))
-        with np.errstate(invalid="ignore"):  # at the pole of a spiral
+        with np.errstate(invalid="ignore"):  # a spiral's pole
             return on_ground + on_body - NEAR_CONFORMAL * np.maximum(np.abs(on_ground), np.abs(on_body))
 
     arcs = np.linspace(body_arc, last, SCAN)

@@ -7,8 +7,8 @@ The convention (it replaces the chapter's "counter-clockwise", which fails for h
 * curvature = d angle / d arc is positive if the boundary bends towards its material, so it is negative for a ring;
 * flat ground with its material below is therefore traversed towards -x.
 
-When B rolls on A the tangents are opposite, angle_A + pi = theta + angle_B, and the contact moves forward on A and
-backward on B: arc_A + arc_B is constant, and d arc_A / d theta = 1 / (curvature_A + curvature_B).
+When B rolls on A the tangents are opposite, angle_A + pi = theta + angle_B. The contact moves forward on A and backward
+on B, so that arc_A + arc_B is constant, with d arc_A / d theta = 1 / (curvature_A + curvature_B).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Curve(Valid, ABC):
 
     `length` [m] is the circumference, or infinite if the curve is not closed. `limits` [m] are the first and last arc.
     `curvature_range` [1/m] is the infimum and supremum of the curvature. All functions take arrays of any shape and are
-    continuous over many turns. Each curve is defined by functions of its natural parameter p.
+    continuous over many turns. A curve is defined by functions of a natural parameter p.
     """
 
     @property
@@ -56,7 +56,7 @@ class Curve(Valid, ABC):
     def parameter_at(self, angle: ArrayLike) -> Array:
         """The natural parameter (...) at which the unwrapped tangent angle is `angle` (...) [rad].
 
-        Raises InvalidMechanism if the curve has no such tangent, or if it is straight.
+        Raises InvalidMechanism if the curve is straight or has no such tangent.
         """
 
     @abstractmethod
@@ -115,7 +115,7 @@ class ByArc(Curve):
 
 def along(arc: ArrayLike) -> Array:
     """Return arcs or angles, which may be NaN, as an array of floats; raise InvalidMechanism for other types."""
-    if type(arc) is np.ndarray and arc.dtype == np.float64:  # fast path for root searches
+    if type(arc) is np.ndarray and arc.dtype == np.float64:  # fast path
         return arc
     return validate("curve", "the place", arc, Numbers)
 
@@ -250,7 +250,7 @@ class _Round(ByArc):
     radius: Positive
     centre: Vector = (0.0, 0.0)
 
-    sense: ClassVar[float] = 1.0  # +1 counter-clockwise, -1 clockwise
+    sense: ClassVar[float] = 1.0  # -1 if clockwise
 
     @property
     def length(self) -> float:

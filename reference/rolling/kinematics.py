@@ -94,7 +94,7 @@ class Rolling(Valid):
         return arc
 
     def _rotation(self, body_parameter: Array) -> tuple[Array, Array]:
-        """-(theta - start) (...) and its derivative by the body's parameter, positive if rolling is possible."""
+        """start - theta (...), and the derivative by the body's parameter, which is positive if rolling is possible."""
         ground = self.ground.parameter(self._ground_arc(self.body.arc_of(body_parameter)))
         ground_start, body_start = self._start_angles
         turned = (self.ground.angle_of(ground) - ground_start) - (self.body.angle_of(body_parameter) - body_start)

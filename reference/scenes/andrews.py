@@ -149,7 +149,7 @@ class Andrews(PlacedScene):
         return angles, [centres[body] for body in range(7)], ends["D"].shifted(-complex(*self.pivot_c))
 
     def _reduced(self, phi: Array) -> tuple[Array, Array, Array]:
-        """m [kg m^2], m' and V' [N m] (...) as functions of the crank's angle."""
+        """The reduced inertia m [kg m^2], m' and the potential's derivative V' [N m] (...) at crank angles."""
         angles, centres, spring = self._placed(phi)
         reduced, change = 0.0 * phi, 0.0 * phi
         for mass, inertia, angle, centre in zip(self.masses, self.inertias, angles, centres, strict=True):
@@ -259,7 +259,7 @@ class Moving(NamedTuple):
 
 
 def direction(angle: Moving) -> Moving:
-    """exp(i angle), an angle in rad."""
+    """exp(i angle) for an angle [rad]."""
     unit = np.exp(1j * angle.value)
     return Moving(unit, 1j * angle.first * unit, (1j * angle.second - angle.first**2) * unit)
 
@@ -268,7 +268,7 @@ def direction(angle: Moving) -> Moving:
 class Dyad(Valid):
     """Two bars of lengths `first` and `second` [m] from a pivot to a point.
 
-    `side` is 1 if the joint between them is to the left of the line from the pivot to the point, -1 if to the right.
+    `side` is 1 if the joint of both bars is to the left of the line from the pivot to the point, else -1.
     """
 
     first: Positive

@@ -1,8 +1,7 @@
 """The exact motion of N four-bars side by side, a benchmark whose one freedom becomes N + 1 freedoms twice a turn.
 
-The whole chain moves as one pendulum, whose exact motion is that of `Pendulum`. If the cranks are parallel to the
-couplers, N rows depend on the remaining rows, and forces grow without limit for N > 1. The derivation is in
-`reference/scenes/derivations.md`.
+The whole chain moves as one pendulum, which is a `Pendulum`. If the cranks are parallel to the couplers, N rows depend
+on the remaining rows, and forces grow without limit for N > 1. The derivation is in `reference/scenes/derivations.md`.
 """
 
 from __future__ import annotations
@@ -31,7 +30,8 @@ Array = NDArray[np.float64]
 class NFourBar(Scene):
     """`loops` is N. Every bar has `length` [m] and `mass` [kg], and pivots have the distance `length`.
 
-    The motion starts upright; the cranks' tops move at `speed` [m/s] to +x. Bodies: cranks 0..N, then couplers 0..N-1.
+    The motion starts upright; the cranks' tops move at `speed` [m/s] to +x. The bodies are the cranks 0 to N and then
+    the couplers 0 to N - 1.
     """
 
     name: ClassVar[str] = "n_four_bar_2"
@@ -55,7 +55,7 @@ class NFourBar(Scene):
 
     @property
     def period(self) -> float:
-        """The time of a whole turn of the cranks [s]; infinite if they stay at the top."""
+        """The time of a whole turn of the cranks [s], which is infinite if the cranks stay at the top."""
         return self.pendulum.period if self.speed else math.inf
 
     @validated
@@ -140,8 +140,8 @@ class NFourBar(Scene):
     def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
         """+1 if every loop is a parallelogram, or -1 if a loop is folded with its coupler along a crank.
 
-        In a folded loop one crank lies along the ground and the other crank along the coupler. The branch is that of
-        the form whose angles fit best. At a singular position all forms fit, and the branch is +1.
+        In a folded loop one crank lies along the ground and the other crank along the coupler. The form whose angles
+        fit best has the branch. At a singular position all forms fit, and the branch is +1.
         """
         cranks, couplers = pose[..., : self.loops + 1, 2], pose[..., self.loops + 1 :, 2]
         first, second = cranks[..., :-1], cranks[..., 1:]
@@ -166,7 +166,7 @@ class TenFourBars(NFourBar):
 
 @dataclass(frozen=True)
 class FortyFourBars(NFourBar):
-    """The benchmark's original size and time: N = 40, 20 s."""
+    """The benchmark with its original size and time, N = 40 and 20 s."""
 
     name: ClassVar[str] = "n_four_bar_40"
     loops: Count = 40

@@ -154,8 +154,8 @@ class OneFoot(EmbeddedScene):
 class TwoFeet(OneFoot):
     """A person on both feet, with `stance` [m] between the ankles. The loop through the ground has three freedoms.
 
-    The start is given by the hip's position (`hip_x`, `hip_y`) [m] from the left ankle and the trunk's angle. Both
-    knees bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of reach.
+    The hip's position (`hip_x`, `hip_y`) [m] from the left ankle and the trunk's angle define the start. Both knees
+    bend to the left (`knees` = +1) or to the right (-1). Raises InvalidMechanism if the hip is out of reach.
     """
 
     name: ClassVar[str] = "person_two_feet"

@@ -2,7 +2,7 @@
 
 The skate's speed u along i' and the turning rate w satisfy u' = a w^2 and (I + m a^2) w' = -m a u w, where the centre
 of mass is at a ahead of the skate (Neimark and Fufaev, Dynamics of Nonholonomic Systems). With k^2 = (I + m a^2)/m the
-energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant. Then u = V tanh p and w = (V/k) sech p, p = c + a V t/k^2.
+energy m (u^2 + k^2 w^2)/2 = m V^2/2 is constant. The solution is u = V tanh p and w = (V/k) sech p, p = c + a V t/k^2.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class PinnedBody(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         angle, rate, acceleration = self._turning(times)
-        arm = -rotated(angle, np.array(self.point))  # (18.63), solved for the body's position
+        arm = -rotated(angle, np.array(self.point))  # by (18.63)
         pose = np.column_stack([np.array(self.pin) + arm, angle])
         twist = np.concatenate([rotation_velocity(rate, arm), rate[:, None]], axis=-1)
         pull = rotation_acceleration(rate, acceleration, arm) - np.array(self.gravity)
@@ -229,7 +229,7 @@ class ChaplyginSleigh(Scene):
 
 @dataclass(frozen=True)
 class SleighBackwards(ChaplyginSleigh):
-    """A sleigh with the centre of mass behind the skate: a small turning rate grows until it has turned round."""
+    """A sleigh with the centre of mass behind the skate: a small turning rate grows until the sleigh turns."""
 
     name: ClassVar[str] = "sleigh_backwards"
 

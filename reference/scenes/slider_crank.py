@@ -125,7 +125,7 @@ class DrivenSliderCrank(EmbeddedScene):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _ = self.shape  # raises InvalidMechanism for wrong lengths
+        _ = self.shape  # checks the lengths
 
     @cached_property
     def shape(self) -> SliderCrank:
@@ -226,7 +226,7 @@ class RodEndInSlot(DrivenSliderCrank):
 class SliderAtDeadCentre(FreeSliderCrank):
     """The slider-crank released at rest near the outer dead centre, under gravity along the slot.
 
-    At the dead centre it would stay at rest. `angle` [rad] determines when and in which direction it moves.
+    The `angle` [rad] of the start from the dead centre determines when and in which direction the crank moves.
     """
 
     name: ClassVar[str] = "slider_at_dead_centre"

@@ -20,7 +20,7 @@ from tests.reference.law import Law, Outside, angle, decades
 
 
 def root(square: Any) -> Any:
-    """The square root of a number. Raises Outside if the number is negative."""
+    """The square root of a number; raises Outside for negative numbers."""
     if square < 0:
         raise Outside
     return mp.sqrt(square)
@@ -239,7 +239,7 @@ def drawn_tow(rng: np.random.Generator) -> tuple[float, ...]:
     share = 1 + float(rng.choice([-1, 1])) * decades(rng, -12, -0.1) if rng.random() < 0.5 else decades(rng, -2, 4)
     radius = length * share * float(rng.choice([-1, 1]))
     start = math.remainder(angle(rng, (0.0, math.pi)), 2 * math.pi)
-    if abs(share) > 1 and rng.random() < 0.3:  # near one of the two equilibria
+    if abs(share) > 1 and rng.random() < 0.3:  # near equilibria
         settled = -math.asin(length / radius)
         start = (settled if rng.random() < 0.5 else math.pi - settled) + float(rng.normal()) * decades(rng, -9, 0)
         start = math.remainder(start, 2 * math.pi)
@@ -278,7 +278,7 @@ def ellipse(a: Any, b: Any, u: Any) -> list[Any]:
     if max(a / b, b / a) > 999:
         raise Outside
     sine, cosine = mp.sin(u), mp.cos(u)
-    excess = mp.atan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)  # tangent angle minus a circle's
+    excess = mp.atan2((a - b) * sine * cosine, a * sine**2 + b * cosine**2)  # angle's excess
     curvature = a * b / mp.hypot(a * sine, b * cosine) ** 3
     return [b * mp.ellipe(u, 1 - (a / b) ** 2), u + mp.pi / 2 + excess, a * cosine, b * sine, curvature]
 

@@ -131,7 +131,7 @@ def test_shapes_can_be_read_back_from_csv_svg_and_dxf():
     )
     ezdxf = pytest.importorskip("ezdxf")
     document = ezdxf.read(io.StringIO(as_dxf(shapes)))
-    assert document.units == 6  # the DXF code for metres
+    assert document.units == 6  # metres
     lines = {line.dxf.layer: np.array([point[:2] for point in line.get_points()]) for line in document.modelspace()}
     np.testing.assert_allclose(lines["SPACE"], shapes.space, atol=1e-12)
     np.testing.assert_allclose(lines["BODY"], shapes.body, atol=1e-12)
@@ -145,7 +145,7 @@ def test_a_table_of_poses_may_have_its_columns_in_any_order():
 
 def test_the_error_bound_of_centrodes_from_poses_is_above_their_true_error():
     t = np.linspace(0, 1.2, 60)
-    run, pace = t + 0.05 * np.sin(12 * t), 1 + 0.6 * np.cos(12 * t)  # same curves, varying rate
+    run, pace = t + 0.05 * np.sin(12 * t), 1 + 0.6 * np.cos(12 * t)  # varying rate
     pose = np.column_stack([0.3 * np.cos(2 * run), 0.1 * np.sin(3 * run), 3 * run + 0.02 * np.sin(5 * run)])
     twist = np.column_stack([-0.6 * np.sin(2 * run), 0.3 * np.cos(3 * run), 3 + 0.1 * np.cos(5 * run)]) * pace[:, None]
     found, exact = from_poses(t, pose), centrodes(t, pose, twist)

@@ -177,7 +177,7 @@ def test_a_free_triple_rocker_changes_its_branch_at_crank_limits_without_a_jolt(
     # At all samples the angles agree with the closed form for the branch from `branch_of`.
     beta, phi = each.four_bar.angles(np.clip(theta, low, high), branch)
     turns = np.array([beta, phi]) - motion.pose[:, 1:, 2].T
-    assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # root of rounding at a limit
+    assert np.max(np.abs(np.remainder(turns + 0.5, 2 * np.pi) - 0.5)) < 1e-6  # root of rounding
 
 
 def test_a_parallelogram_has_one_more_freedom_with_its_bars_in_line():

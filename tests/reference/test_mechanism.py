@@ -240,8 +240,8 @@ def test_degrees_of_freedom_do_not_depend_on_the_unit_of_length(scale):
 
 def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth():
     rows = np.zeros((4, 6))
-    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # The fourth row is independent.
-    rows[1, :2] = 1.0, 1e-3  # The first row plus a thousandth of the third row.
+    rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # Row 3 is independent.
+    rows[1, :2] = 1.0, 1e-3  # Row 1 is row 0 plus a thousandth of row 2.
     several = undetermined(np.stack([rows, np.eye(6)[:4]]), 1.0)
     assert several.tolist() == [[True, True, True, False], [False] * 4]
     assert rank(rows, 1.0) == 3

@@ -183,7 +183,7 @@ def test_the_branch_distinguishes_parallelograms_from_folded_loops() -> None:
         angle = folded[1, 2]
         folded[crank] = (at, 0.0, way)
         folded[coupler] = (1 + 0.5 * math.cos(angle), 0.5 * math.sin(angle), angle + way)
-        assert np.abs(mechanism.gap(folded, 0.0)).max() < 1e-14  # the folded loop satisfies the joints
+        assert np.abs(mechanism.gap(folded, 0.0)).max() < 1e-14
         assert scene.branch_of(folded) == -1
         assert t == 0.3 or math.cos(angle) < -1 / 2
 
@@ -201,7 +201,7 @@ def test_segment_masses_sum_to_one_and_radii_of_gyration_agree_with_winters_tabl
     """The third column has radii of gyration about the proximal end."""
     assert HEAD_ARMS_TRUNK.mass + 2 * THIGH.mass + 2 * SHANK_AND_FOOT.mass == pytest.approx(1.0, abs=1e-12)
     for segment, about_the_end in ((HEAD_ARMS_TRUNK, 0.798), (THIGH, 0.540), (SHANK, 0.528), (SHANK_AND_FOOT, 0.735)):
-        # the table has three digits
+        # three digits
         assert math.hypot(segment.centre, segment.gyration) == pytest.approx(about_the_end, abs=1e-3)
 
 

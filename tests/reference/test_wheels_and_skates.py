@@ -134,7 +134,7 @@ def test_axles_of_a_car_with_trailers_have_no_lateral_velocity():
     heading = middle.pose[:, :, 2]
     across = -np.sin(heading) * velocity[..., 0] + np.cos(heading) * velocity[..., 1]
     along = np.cos(heading) * velocity[..., 0] + np.sin(heading) * velocity[..., 1]
-    assert np.abs(across).max() < 1e-8  # truncation error of order 6, and rounding
+    assert np.abs(across).max() < 1e-8  # truncation and rounding
     assert np.abs(along - middle.speed).max() < 1e-8
 
 

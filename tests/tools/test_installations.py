@@ -22,7 +22,7 @@ import pytest
 from tests import ROOT
 from tests.reports.test_check import FOUR_BAR
 
-OLDEST_SETUPTOOLS = 77  # pyproject.toml requires this version.
+OLDEST_SETUPTOOLS = 77  # As in pyproject.toml.
 # Folders that are not committed, and folders that a wheel does not contain.
 LEFT_OUT_OF_CHECKOUT = (".*", "__pycache__", "build", "dist", "*.egg-info", "crosscheck-results", "tests")
 BUILD = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"
@@ -205,7 +205,7 @@ def test_publishing_from_an_installation_and_a_foreign_package_with_one_of_our_n
     assert line.startswith(
         f"crosscheck: the package 'engines' is another one, at {tmp_path / 'engines'}, and ours is at "
     )
-    for program in (["crosscheck"], ["python", "-m", "planar_crosscheck"]):  # both ignore the current folder
+    for program in (["crosscheck"], ["python", "-m", "planar_crosscheck"]):
         assert call(*program, "--help")[0] == 0
 
 

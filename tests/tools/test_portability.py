@@ -79,7 +79,7 @@ def test_every_dependency_has_a_lower_bound():
 # File names to an import that a contract forbids there.
 FORBIDDEN = {
     "engines/extrapolated.py": "from reference.scenes.catalogue import SCENES",
-    "reference/rolling/roll.py": "import reference.scenes.rolling.body",  # engines would import it indirectly
+    "reference/rolling/roll.py": "import reference.scenes.rolling.body",  # indirectly
     "reference/mechanism.py": "import reports.model.page",
 }
 

@@ -46,7 +46,8 @@ class Mistake:
     mass, inertia: a body's value times 1 + r. length: the positions of all joints of a body, times 1 + r. gravity:
     gravity times 1 + r, or r L / T^2 downwards if gravity is zero. point: a joint's point, moved by r L. angle: the
     angle of a skate's blade, a slot's line, a drive's start or a rolling curve, plus r. size: the size of a rolling
-    curve, times 1 + r. rate: a drive's rate, or the start's rates without a drive, times 1 + r, or r / T if zero.
+    curve, times 1 + r. rate: a drive's rate (or the start's twists without a drive) times 1 + r, or r / T for a rate of
+    zero.
     """
 
     kind: str
@@ -212,7 +213,7 @@ class MistakeTrial:
 
 @dataclass(frozen=True)
 class Sighting:
-    """How a mistake was noticed.
+    """The result of the checks of a mistake.
 
     `check`: the check of theory that only the wrong model fails, or "". `every`: the number of steps per sample in the
     last run. `changed`: whether the gate of change distinguishes the wrong row from the right row at any step. `shift`:

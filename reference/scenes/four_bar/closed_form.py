@@ -41,7 +41,7 @@ class OutOfReach(Exception):
 
 
 def difference(*terms: float) -> float:
-    """The sum of terms, set to zero if it is within the rounding of the terms."""
+    """The sum of terms, or zero for a sum within the rounding of the terms."""
     total = math.fsum(terms)
     return 0.0 if abs(total) <= 4 * np.finfo(float).eps * sum(abs(term) for term in terms) else total
 
@@ -51,8 +51,8 @@ class Constants:
     """Constants of the closed form for lengths l1, l2, l3 [m] and the ground vector A -> D of length d [m].
 
     heading [rad] is the direction of A -> D. outer_near and outer_far are U at theta' = 0 and pi, inner_near and
-    inner_far are W at theta' = 0 and pi. B can't reach its largest distance from D if outer_far < 0, and its smallest
-    distance if inner_near < 0. The loop has no position if outer_near < 0 or inner_far < 0.
+    inner_far are W at theta' = 0 and pi. The largest distance of B from D can't be reached if outer_far < 0, the
+    smallest distance if inner_near < 0. The loop has no position if outer_near < 0 or inner_far < 0.
     """
 
     l1: float
@@ -186,8 +186,8 @@ def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> 
 
 
 def _within_reach(c: Constants, u: Array, w: Array, square: Array) -> tuple[Array, Array]:
-    """U and W; negative values within rounding are set to zero. Raises OutOfReach unless every triangle closes."""
-    if u.size and not min(float(np.min(u)), float(np.min(w))) >= 0:  # NaN is refused too
+    """Set negative values of U and W within rounding to zero. Raises OutOfReach unless every triangle closes."""
+    if u.size and not min(float(np.min(u)), float(np.min(w))) >= 0:  # or NaN
         allowed = -ANGLE_ROUNDINGS * np.finfo(float).eps * (c.l1 + c.d) ** 2
         bad = ~(np.minimum(u, w) >= allowed)
         if np.any(bad):

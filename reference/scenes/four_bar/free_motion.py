@@ -86,7 +86,8 @@ class CurveMotion(Valid):
 
         root = np.sqrt(self._inertia(start[:3], self._direction(start[:3]))) / largest
         state = np.append(unit * start[:3], start[3] * root)
-        # The integrator is for second-order equations. The state is its velocity; its positions are not used.
+        # The integrator is for second-order equations. The state is passed as velocities; the integrator's positions
+        # are not used.
         solution = gauss.integrate(slopes, np.zeros(4), state, until, float(unit), stages, CURVE_TOLERANCE)
 
         def states(times: Array) -> Any:
@@ -125,10 +126,9 @@ class CurveMotion(Valid):
         return self._direction_and_bend(angle)[0]
 
     def _direction_and_bend(self, angle: Any) -> tuple[Any, Any]:
-        """t and its derivative along itself (dt/dq) t, each (..., 3)."""
+        """The tangent t and the derivative (dt/dq) t along the tangent, each (..., 3)."""
         l1, l2, l3 = (np.longdouble(length) for length in self.four_bar.lengths)
         factor = np.array([l2 * l3, l1 * l3, -l1 * l2])
-        # phi - beta, theta - phi, beta - theta
         difference = np.roll(angle, 1, axis=-1) - np.roll(angle, -1, axis=-1)
         direction = factor * np.sin(difference)
         turning = np.roll(direction, 1, axis=-1) - np.roll(direction, -1, axis=-1)
@@ -147,7 +147,7 @@ class CurveMotion(Valid):
         return np.longdouble(self.masses[1]) * np.longdouble(self.four_bar.crank) * np.longdouble(self.four_bar.coupler)
 
     def _inertia(self, angle: Any, t: Any) -> Any:
-        """I (...,) at angles (..., 3)."""
+        """The inertia I (...,) at angles (..., 3)."""
         coupling = self._cross * np.cos(angle[..., 1] - angle[..., 0])
         return np.sum(self._bar_inertias * t * t, axis=-1) + coupling * t[..., 0] * t[..., 1]
 
@@ -159,7 +159,7 @@ class CurveMotion(Valid):
         return np.sum(carried * force * t, axis=-1)
 
     def _change(self, angle: Any, u: Any, t: Any, bend: Any) -> Any:
-        """u' (...,) at angles (..., 3) and u (...,)."""
+        """The acceleration u' (...,) at angles (..., 3) and u (...,)."""
         between = angle[..., 1] - angle[..., 0]
         coupling, fading = self._cross * np.cos(between), -self._cross * np.sin(between)
         inertia_slope = (

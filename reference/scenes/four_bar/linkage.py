@@ -63,7 +63,7 @@ def bar_forces(
     """
     masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
     falling = complex(*gravity)
-    # Plane vectors are complex numbers. `half` is the vector from a bar's first end to its centre, `moving` the
+    # Vectors of the plane are complex numbers. `half` is the vector from a bar's first end to its centre, `moving` the
     # acceleration of the centre relative to that end.
     half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
     moving = [
@@ -193,7 +193,7 @@ def _fixed(
                 return evaluations, f"stopped at t = {times[index - 1]:.6g} s after {evaluations} evaluations"
             slopes = [np.zeros(3)]
             for node in nodes:
-                slopes.append(odes(0.0, angles + step * node * slopes[-1]))  # the rates don't depend on time
+                slopes.append(odes(0.0, angles + step * node * slopes[-1]))  # autonomous
             angles = angles + step * (weights @ np.array(slopes[1:]))
             evaluations += len(nodes)
         out[index] = angles

@@ -126,7 +126,7 @@ class Chain(Valid):
             centripetal = rate[..., None] ** 2 * half
             right = -centripetal
             right[..., 1:, :] -= centripetal[..., :-1, :]
-            right[..., 0, 1] += self.gravity  # at the lower joints gravity cancels
+            right[..., 0, 1] += self.gravity  # gravity cancels elsewhere
             solution = solveh_banded(
                 banded.reshape(4, -1), right.reshape(-1), overwrite_ab=True, overwrite_b=True, check_finite=False
             )
@@ -201,7 +201,8 @@ class Chain(Valid):
         return self._by_collocation(start, until)
 
     def _by_collocation(self, start: Array, until: float, coarse: bool = False) -> gauss.CollocationMotion:
-        """The motion by collocation. If `coarse`, the rule has fewer stages and ten times the tolerance."""
+        """The motion of the links by collocation. If `coarse`, the rule has fewer stages and ten times the
+        tolerance."""
         angle, rate = np.split(start, 2)
         unit = float(units_of_motion(self.rates, start)[-1])
         stages, tolerance = (gauss.COARSE_STAGES, gauss.COARSER) if coarse else (gauss.STAGES, 1.0)
@@ -227,7 +228,7 @@ class Chain(Valid):
         Raises InvalidMechanism if the matrix takes more than checks.LARGEST_ARRAY.
         """
         require_room("chain: the dense inertia matrix", (self.links, self.links))
-        below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])  # mass hanging from each link
+        below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
         lever = self._length * (self._mass / 2 + below)
         index = np.arange(self.links)
         matrix = np.where(index[:, None] < index, np.outer(self._length, lever), np.outer(lever, self._length))
@@ -269,11 +270,11 @@ class Chain(Valid):
         """The largest growth factor of a small difference of starts at times t (times,) [s].
 
         `starts` neighbouring motions are integrated. The angles at their starts differ by PERTURBATION in pseudo-random
-        directions with a fixed seed. The largest angle measures a difference.
+        directions with a fixed seed. The size of a difference is its largest angle.
         """
         t, start = sample_times("chain", t), self._start(angle, rate)
         until = max(float(t.max(initial=0.0)), math.ulp(1.0))
-        tolerance = PERTURBATION * 1e-4  # far below the measured difference
+        tolerance = PERTURBATION * 1e-4
         generator = np.random.default_rng(0)
         together = np.tile(start, (starts + 1, 1))
         for neighbour in together[1:]:

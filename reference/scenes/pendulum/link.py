@@ -145,7 +145,7 @@ class Pendulum(Valid):
 
     @property
     def kind(self) -> str:
-        """'swinging', 'whirling' or 'separatrix'."""
+        """The kind of motion: 'swinging', 'whirling' or 'separatrix'."""
         return "swinging" if self.excess < 0 else "whirling" if self.excess > 0 else "separatrix"
 
     @cached_property
@@ -172,7 +172,7 @@ class Pendulum(Valid):
         speed, start, complement = self._elliptic
         t, cycles = np.asarray(t, dtype=float), np.zeros(np.shape(t))
         if math.isfinite(self.period):
-            within = np.remainder(t, self.period)  # only the period is rounded
+            within = np.remainder(t, self.period)
             t, cycles = within, np.round((t - within) / self.period)
         sn, cn, dn, amplitude = jacobi(speed * t + start, complement)
         if self.excess > 0:
@@ -278,6 +278,6 @@ class PointPendulum(BarPendulum):
 
     @validated
     def bob(self, pose: Poses) -> Array:
-        """Position (..., 2) [m] of the point mass, at 2/3 of the bar, for poses (..., 1, 3)."""
+        """Position (..., 2) [m] of the bar's point at 2/3 of its length for poses (..., 1, 3)."""
         angle = pose[..., 0, 2] + math.pi / 2
         return pose[..., 0, :2] + (2 / 3 - 1 / 2) * self.length * direction_of(angle)

@@ -177,6 +177,6 @@ class SpinningRing(PlacedScene):
         half = self.length / 2
         joints = tuple(
             Pin(f"joint {i + 1}", bodies[i - 1].name, bodies[i].name, (half, 0.0), (-half, 0.0))
-            for i in [*range(1, self.links), 0]  # the last joint closes the ring
+            for i in [*range(1, self.links), 0]
         )
         return Mechanism(bodies, joints)

@@ -194,7 +194,7 @@ class RollingBody(Valid):
 
     @validated
     def stiffness(self, theta: ArrayLike) -> Array:
-        """d^2V/dtheta^2 (...) [N m/rad]."""
+        """The second derivative of V by theta (...) [N m/rad]."""
         contact = self.rolling.contact(theta)
         gravity = np.asarray(self.gravity)
         across = gravity[1] * contact.tangent[..., 0] - gravity[0] * contact.tangent[..., 1]
@@ -202,7 +202,8 @@ class RollingBody(Valid):
 
     @validated
     def small_frequency(self, equilibrium: float) -> float:
-        """The rate sqrt(V'' / M) [rad/s] of small oscillations. Raises InvalidMechanism unless stable."""
+        """The rate sqrt(V'' / M) [rad/s] of small oscillations. Raises InvalidMechanism unless the equilibrium is
+        stable."""
         stiffness = float(self.stiffness(equilibrium))
         if not stiffness > 0:
             raise InvalidMechanism(

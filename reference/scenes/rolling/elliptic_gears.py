@@ -40,8 +40,8 @@ class EllipticGears(Scene):
 
     major: Positive = 0.3  # m, semi-axis a
     eccentricity: Annotated[float, from_to(0, 0.99)] = 0.5
-    turning_rate: float = 3.0  # rad/s of the first gear.
-    start_angle: float = 0.4  # rad of the first gear.
+    turning_rate: float = 3.0  # rad/s, first gear.
+    start_angle: float = 0.4  # rad, first gear.
     mass: Positive = 1.0  # kg, each.
     duration: Positive = 2.0  # s.
     horizon: Positive = 2.0  # s.

@@ -42,7 +42,7 @@ class RollingScene(Scene):
     ground_arc: float = 0.0  # m, at the start.
     gravity: Vector = (0.0, -GRAVITY)  # m/s^2.
     duration: Positive = 2.0  # s.
-    friction: Positive = 1.0  # Friction coefficient of a real contact.
+    friction: Positive = 1.0  # Of real contacts.
 
     @abstractmethod
     def body_curve(self) -> Curve:
@@ -68,7 +68,7 @@ class RollingScene(Scene):
 
     @cached_property
     def hop(self) -> float | None:
-        """The time [s] after which the contact would have to pull, or None if it is after the duration."""
+        """The time [s] after which the contact would have to pull, or None without such a time."""
         return self.motion_law.hop(self.duration)
 
     @cached_property
@@ -128,7 +128,7 @@ class RollingDisc(RollingScene):
     name: ClassVar[str] = "rolling_disc"
 
     radius: Positive = 0.4  # m.
-    eccentricity: float = 0.15  # m, between centre of mass and disc's centre.
+    eccentricity: float = 0.15  # m.
 
     def body_curve(self) -> Curve:
         return Circle(self.radius, (self.eccentricity, 0.0))
@@ -144,7 +144,7 @@ class RollingCam(RollingScene):
 
     name: ClassVar[str] = "rolling_cam"
 
-    radius: Positive = 0.4  # m, mean of the support function.
+    radius: Positive = 0.4  # m, mean radius.
     cosines: tuple[float, ...] = (0.05, 0.0, 0.02)  # m, its harmonics.
     sines: tuple[float, ...] = (0.0, 0.02)
     gyration: Positive = 0.28  # m, radius of gyration
@@ -163,7 +163,7 @@ class RollingDownhill(RollingEllipse):
 
     name: ClassVar[str] = "rolling_incline"
 
-    slope: float = 0.1  # rad, the ground rises to +x
+    slope: float = 0.1  # rad, positive upwards
     along_y: Positive = 0.4
     start_rate: float = 2.5
 
@@ -186,7 +186,7 @@ class RollingInRing(RollingEllipse):
         return max(1, super().samples // 2)
 
     def ground_curve(self) -> Curve:
-        return Placed(Ring(self.ring), turn=-math.pi / 2)  # arc 0 at the bottom
+        return Placed(Ring(self.ring), turn=-math.pi / 2)
 
 
 @dataclass(frozen=True)
@@ -202,7 +202,7 @@ class RollingOnCircle(RollingDisc):
     duration: Positive = 1.2
 
     def ground_curve(self) -> Curve:
-        return Placed(Circle(self.hill), turn=math.pi / 2)  # arc 0 at the top
+        return Placed(Circle(self.hill), turn=math.pi / 2)
 
 
 Clearance = Annotated[float, Rule(lambda value: 0 < value < 1, "between 0 and 1")]
@@ -219,7 +219,7 @@ class DiscInHole(RollingScene):
     name: ClassVar[str] = "disc_in_hole"
 
     hole: Positive = 1.0  # m, radius.
-    clearance: Clearance = 0.1  # Of the hole's radius.
+    clearance: Clearance = 0.1
     start_rate: float = 1.0
     gravity: Vector = (0.0, 0.0)
     duration: Positive = 1.0

@@ -66,7 +66,7 @@ class Tow(Valid):
         """psi [rad, not wrapped] after the hitch has moved by the distance s (...) [m]; backwards s is negative."""
         distance = np.asarray(distance, dtype=float)
         across, along = self._half_angle_vector(distance)
-        # The angle of (q, p) is psi / 2. It is monotonic, and below pi if the discriminant is not negative.
+        # The angle psi / 2 of (q, p) is monotonic, and below pi if the discriminant is not negative.
         half_turns = np.round(self._rate * distance / math.pi) if self._discriminant < 0 else 0.0
         return self.angle + 2 * (np.arctan2(across, along) - math.copysign(math.pi, self.radius) * half_turns)
 
@@ -76,7 +76,7 @@ class Tow(Valid):
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
     def _remainder(self, distance: Array) -> Array:
-        """The angle of (q, p) without its half turns [rad]."""
+        """The mean angle of (q, p) [rad] at a distance, without half turns."""
         return self._rate * distance - np.round(self._rate * distance / math.pi) * math.pi
 
     def _half_angle_vector(self, distance: Array) -> tuple[Array, Array]:

@@ -4,7 +4,7 @@ The car has one freedom of velocity, the speed v of its rear axle along a circle
 at the distance s. The trailer is a towed drawbar (`trailers.Tow`) whose hitch moves on a circle. The function t(s) =
 int sqrt(M(s)/M(0)) ds / v(0) is inverted, and no equation of motion is solved.
 
-A caster is a drawbar that its kingpin tows, and swings round in reverse. The wheel is `trail` c behind the kingpin. The
+A caster is a drawbar towed by a kingpin, and it swings round in reverse. The wheel is `trail` c behind the kingpin. The
 kingpin is at (x, y) from the middle of the rear axle, which has the speed u and the turning rate w; With the caster's
 direction beta (wheel to kingpin) relative to the cart, w + beta' = (x w cos beta - (u - y w) sin beta)/c.
 """
@@ -153,7 +153,7 @@ class CarAndTrailer(Scene):
         """Poses, twists and accelerations (times, 2, 3)."""
         headings = self._headings(way)
         per_way = self._per_way(headings)
-        turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # rates of the headings per metre
+        turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # per metre
         bending = np.imag(self._per_way(turning)) / COMPLEX_STEP
         mass = np.sum(self._weights * per_way**2, axis=(-2, -1))
         speed_rate = -np.sum(self._weights * per_way * bending, axis=(-2, -1)) / mass * speed**2
