@@ -162,7 +162,7 @@ def freudenstein(crank: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Newton(MethodTask):
+class NewtonBounds(MethodTask):
     """A task with the measured quantities of Newton's tests for an engine."""
 
     description: ClassVar[str] = "Newton's bounds"

@@ -33,7 +33,7 @@ from reports.pages.published.experiments import (
     PUBLISHED,
     Acrobot,
     DirectRK4,
-    Newton,
+    NewtonBounds,
 )
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg
@@ -92,7 +92,7 @@ IFTOMM_PRECISIONS = (1e-1, 1e-3)
 IFTOMM_CELLS = (*PHASE, *sweep_cells((NFourBar(),), VARIANTS, FULL))
 DIRECT_RK4 = DirectRK4()
 ACROBOTS = tuple(Acrobot(engine) for engine in VARIANTS)
-NEWTONS = tuple(Newton(engine) for engine in VARIANTS)
+NEWTONS = tuple(NewtonBounds(engine) for engine in VARIANTS)
 
 
 def costs(rows: Rows, scene: Scene, engine: Engine) -> list[str]:
