@@ -212,8 +212,8 @@ BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
 class Box2D(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    substeps: number of sub-steps in a step; the engine's manual recommends 4
-    closing: frequency of pins, welds and rods times the sub-step h; 0 for the frequency as shipped
+    substeps: number of sub-steps in a step; the engine's manual recommends 4.
+    closing: frequency of pins, welds and rods times the sub-step h; 0 for the frequency as shipped.
     """
 
     name = "box2d"

@@ -66,9 +66,9 @@ BULLET_JOINTS = {Pin: "JOINT_POINT2POINT", Weld: "JOINT_FIXED", Slot: "", Drive:
 class Bullet(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    iterations: largest number of the solver's iterations over the rows
-    residual: tolerance of the solver's residual
-    erp: share of a gap that a step closes
+    iterations: largest number of the solver's iterations over the rows.
+    residual: tolerance of the solver's residual.
+    erp: share of a gap that a step closes.
     """
 
     name = "bullet"

@@ -16,10 +16,10 @@ class Unsupported(Exception):
 
     If an engine has no element of a kind, the exception has these fields. Otherwise they are "".
 
-    engine: the engine's name
-    kind: the name of the element's class
-    lacking: the reason, without the element's name
-    documentation: address of the engine's documentation which says that the engine has no such element
+    engine: the engine's name.
+    kind: the name of the element's class.
+    lacking: the reason, without the element's name.
+    documentation: address of the engine's documentation which says that the engine has no such element.
     """
 
     def __init__(
@@ -45,11 +45,11 @@ class Lack:
 class Capability:
     """The exact classes of joints and force elements that an adapter builds.
 
-    engine: the engine's name in messages
+    engine: the engine's name in messages.
     joints, forces: the classes, or tables of constructions by class; `forces` is None if our code evaluates all force
-        elements
-    lacks: why the adapter does not build a class
-    lacks_in_loops: why the adapter does not build a class of joints that closes a loop of the tree
+        elements.
+    lacks: why the adapter does not build a class.
+    lacks_in_loops: why the adapter does not build a class of joints that closes a loop of the tree.
 
     The adapter also refuses a class that has none of these entries.
     """

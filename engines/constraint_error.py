@@ -64,7 +64,7 @@ def closing(mechanism: Mechanism, t: Array, pose: Array, at: Array | None = None
 def displaced_reaction(mechanism: Mechanism, pose: Array, reaction: Array, moved: Array) -> Array:
     """The reactions (times, rows) that give bodies the same accelerations at poses displaced by `moved`.
 
-    pose, moved (times, bodies, 3); reaction (times, rows)
+    pose, moved (times, bodies, 3); reaction (times, rows).
     """
     pulled = np.einsum("tr,trc->tc", reaction, mechanism.rows(pose)).reshape(pose.shape)
     return mechanism.reactions_of(pose + moved, pulled / mechanism.inertias, mechanism.inertias)
@@ -74,7 +74,7 @@ def largest_force(mechanism: Mechanism, pose: Array, twist: Array, reaction: Arr
     """The largest reaction in a motion [N]; a torque is divided by the mechanism's length.
 
     The result is at least LEAST_FORCE times the largest load or sum of m v^2 / length.
-    pose, twist (times, bodies, 3); reaction (times, rows)
+    pose, twist (times, bodies, 3); reaction (times, rows).
     """
     length = mechanism.length_scale
     arm, sizes = np.where(mechanism.is_angular, length, 1.0), np.array([1.0, 1.0, 1 / length])

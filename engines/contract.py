@@ -76,10 +76,10 @@ def unresolved(time: float, reason: str) -> RunWarning:
 class Size:
     """The size of an engine's model.
 
-    bodies: number of moving bodies
-    coordinates: number of position coordinates that the engine integrates
-    rows: number of scalar constraints that the engine enforces by forces
-    solver_rows: number of rows in the engine's solver, including empty rows
+    bodies: number of moving bodies.
+    coordinates: number of position coordinates that the engine integrates.
+    rows: number of scalar constraints that the engine enforces by forces.
+    solver_rows: number of rows in the engine's solver, including empty rows.
     """
 
     bodies: int
@@ -93,9 +93,9 @@ class Regularisation:
     """Regularised joints: J a = bias - damping * slip - stiffness * gap - compliance * A * reaction.
 
     stiffness [1/s^2], damping [1/s]
-    compliance: factor on A, the row's inverse inertia J M^-1 J^T
-    rows (rows,): whether a row of the mechanism is regularised; the engine satisfies the other rows exactly
-    complete: whether the law contains `bias`, which is -(dJ/dt) v
+    compliance: factor on A, the row's inverse inertia J M^-1 J^T.
+    rows (rows,): whether a row of the mechanism is regularised; the engine satisfies the other rows exactly.
+    complete: whether the law contains `bias`, which is -(dJ/dt) v.
     """
 
     stiffness: float
@@ -109,12 +109,12 @@ class Regularisation:
 class ConvergenceOrder:
     """Expected convergence order of each error; EXACT (inf) where there is no discretisation error.
 
-    order: order of the poses, and of each quantity below whose field is None
-    rate, gap, slip, energy: order of this quantity
-    reaction: order of the reactions; NaN if the engine provides no reactions
+    order: order of the poses, and of each quantity below whose field is None.
+    rate, gap, slip, energy: order of this quantity.
+    reaction: order of the reactions; NaN if the engine provides no reactions.
     integrator: order of the integrator alone, if the regularisation depends on the step and determines the other orders
-    differences: 0 if the engine provides forces; otherwise reactions are changes of velocity over dt / differences
-    amplified: factor on the rounding errors of poses, velocities and energies in a combination of runs
+    differences: 0 if the engine provides forces; otherwise reactions are changes of velocity over dt / differences.
+    amplified: factor on the rounding errors of poses, velocities and energies in a combination of runs.
     """
 
     order: float
@@ -149,10 +149,10 @@ class NotDeclared:
 class Instant:
     """A result of the engine in one state, and its expected value by the declared law.
 
-    check: "acceleration", "velocity" (after a step), "reaction", or another name that the engine chooses
-    state: pose and twist (bodies, 3)
-    found, expected: (bodies, 3), or (rows,) for reactions
-    scales: arrays of the same shape; errors are relative to the largest value in `scales` and `expected`
+    check: "acceleration", "velocity" (after a step), "reaction", or another name that the engine chooses.
+    state: pose and twist (bodies, 3).
+    found, expected: (bodies, 3), or (rows,) for reactions.
+    scales: arrays of the same shape; errors are relative to the largest value in `scales` and `expected`.
     """
 
     check: str
@@ -185,13 +185,13 @@ class OneShot:
 class Engine(ABC):
     """The base class of every engine: the members of the contract, most of which have a default.
 
-    name, variant, packages: see items 2 and 3 of the contract
-    modules: slow modules, which are imported when the first mechanism is built
-    build_time: approximate CPU time to build a model [s]; 0 for a few milliseconds
-    precision: relative rounding of the engine's numbers; 0 for double precision
-    angle_error: error of the engine's angles between bodies, in addition to rounding [rad]
-    forces_by: who evaluates the force elements
-    capability: the joints and force elements that the engine builds; None for an engine without such a table
+    name, variant, packages: see items 2 and 3 of the contract.
+    modules: slow modules, which are imported when the first mechanism is built.
+    build_time: approximate CPU time to build a model [s]; 0 for a few milliseconds.
+    precision: relative rounding of the engine's numbers; 0 for double precision.
+    angle_error: error of the engine's angles between bodies, in addition to rounding [rad].
+    forces_by: who evaluates the force elements.
+    capability: the joints and force elements that the engine builds; None for an engine without such a table.
     """
 
     name: str
@@ -248,7 +248,7 @@ class Engine(ABC):
     ) -> tuple[Instant, ...] | NotDeclared:
         """Results at t = 0 and in the first `steps` steps of dt [s], with their expected values by the declared law.
 
-        `built`: the mechanism that the engine builds; tests pass a mechanism with a deliberate mistake
+        `built`: the mechanism that the engine builds; tests pass a mechanism with a deliberate mistake.
         """
         return NotDeclared("it declares no law of an instant")
 

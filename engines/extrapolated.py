@@ -239,8 +239,8 @@ class ExtrapolatedRun(OneShot):
     def _unresolved_at(self, t: Array, estimate: Array, finest: Array, coarsest: int) -> float | None:
         """The first time [s] at which the error may exceed the claim, or None.
 
-        finest (times, bodies, 3): poses of the finest run
-        coarsest: number of steps of the coarsest run between two times
+        finest (times, bodies, 3): poses of the finest run.
+        coarsest: number of steps of the coarsest run between two times.
         """
         if self._mechanism.applied.dissipate and self._dt / self._levels[0] > self._mechanism.time_scale:
             return 0.0

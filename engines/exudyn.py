@@ -51,13 +51,13 @@ EXUDYN_STEP_COST = 19e-6
 class Exudyn(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    relative, absolute: tolerances of Newton's method
-    damping: spectral radius of GeneralizedAlpha at infinite frequency; 1 means no damping
-    consistent: pass initial accelerations to the engine, which then does not compute them
-    sparse: use a sparse factorisation in Newton's method
+    relative, absolute: tolerances of Newton's method.
+    damping: spectral radius of GeneralizedAlpha at infinite frequency; 1 means no damping.
+    consistent: pass initial accelerations to the engine, which then does not compute them.
+    sparse: use a sparse factorisation in Newton's method.
     own_units: use the mechanism's length, mass and time as units of the model. Constants of the engine, such as the
         shortest time between samples, 1e-10, are then in these units. Newton's increment then decides convergence:
-        `relative` refers to the first increment, and `absolute` is a rate in these units
+        `relative` refers to the first increment, and `absolute` is a rate in these units.
     """
 
     name = "exudyn"

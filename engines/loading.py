@@ -30,8 +30,8 @@ FORMS = "package.module:NAME, path/to/file.py or path/to/file.py:NAME"
 class Kind:
     """A kind of value that a reference must name.
 
-    word: name of the kind in messages, such as "engine"
-    trouble: function that returns a clause on why a value is not of this kind; empty if the value is of this kind
+    word: name of the kind in messages, such as "engine".
+    trouble: function that returns a clause on why a value is not of this kind; empty if the value is of this kind.
     defaults: function that returns an instance of a class made without arguments, or None. If `defaults` is None,
     classes in a file are ignored
     """
@@ -175,8 +175,8 @@ def registered(
 ) -> Registered:
     """All values of a group with unique names. For equal names, our value or the first distribution's value is used.
 
-    known: values of other groups by name; a different value with a known name is left out
-    extras: whether to use entry points with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, or those without
+    known: values of other groups by name; a different value with a known name is left out.
+    extras: whether to use entry points with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, or those without.
     """
     values: dict[str, Any] = {}
     owners = dict.fromkeys(known, "another group")

@@ -60,10 +60,10 @@ REFUSED_SOLVERS = {
 class Newton(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    solver: "kamino" or "xpbd"
-    backend: backend of Kamino, "padmm", "dvi" or "lox"
-    alpha: fraction of a gap that a step of Kamino closes; LOX does not use it
-    iterations: number of iterations of XPBD
+    solver: "kamino" or "xpbd".
+    backend: backend of Kamino, "padmm", "dvi" or "lox".
+    alpha: fraction of a gap that a step of Kamino closes; LOX does not use it.
+    iterations: number of iterations of XPBD.
     """
 
     name = "newton"
@@ -225,8 +225,8 @@ class NewtonModel:
 
     def _record(self, samples: int, every: int) -> Recorded:
         warp, states, last = self.warp, [self._start(), self._start()], self.mechanism.pose[:, 2].copy()
-        self.solver.step(self._start(), self._start(), self.control, None, self.dt)  # compiles or loads the kernels
-        self.solver = self._solver()  # the new solver has no forces of that step
+        self.solver.step(self._start(), self._start(), self.control, None, self.dt)  # compiles or loads the kernels.
+        self.solver = self._solver()  # the new solver has no forces of that step.
         graphs = []
         for now, then in ((states[0], states[1]), (states[1], states[0])):
             with warp.ScopedCapture() as capture:

@@ -61,8 +61,8 @@ PINOCCHIO_JOINTS = {Pin: "CONTACT_3D", Weld: "CONTACT_6D", Slot: "", Drive: ""}
 class Pinocchio(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    integrator: "euler" (semi-implicit, order 1) or "rk4" (order 4)
-    correction: Baumgarte correction of loops [1/s]
+    integrator: "euler" (semi-implicit, order 1) or "rk4" (order 4).
+    correction: Baumgarte correction of loops [1/s].
     """
 
     name = "pinocchio"

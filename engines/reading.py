@@ -36,7 +36,7 @@ class Note:
 class Obstacle:
     """An event in the user's model at the time `t` [s], such as a contact, that an ideal mechanism does not have.
 
-    `words`: the event in a message; `remedy`: what the user can do about it
+    `words`: the event in a message; `remedy`: what the user can do about it.
     """
 
     t: float
@@ -48,10 +48,10 @@ class Obstacle:
 class Change:
     """Documented settings of an engine.
 
-    words: description of the settings
-    dt: step [s]
-    lines: lines that a user can copy
-    options: settings of the model by name
+    words: description of the settings.
+    dt: step [s].
+    lines: lines that a user can copy.
+    options: settings of the model by name.
     """
 
     words: str
@@ -172,7 +172,7 @@ class Source:
 class Reading:
     """A user's model and the mechanism that it describes, with notes on elements that were left out.
 
-    `source`: the file of the model, or None if the model was built in Python
+    `source`: the file of the model, or None if the model was built in Python.
     """
 
     mechanism: Mechanism
@@ -191,9 +191,9 @@ class Reading:
 class ReadingTerms:
     """Options for reading a user's model.
 
-    without: kinds of elements to switch off in the mechanism and in the user's model
-    key: the name or number of a stored state
-    step: step [s] that replaces the model's step
+    without: kinds of elements to switch off in the mechanism and in the user's model.
+    key: the name or number of a stored state.
+    step: step [s] that replaces the model's step.
     """
 
     without: tuple[str, ...] = ()

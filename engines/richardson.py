@@ -1,8 +1,8 @@
 """Richardson's extrapolation to zero step, and estimates of its error, as functions of arrays.
 
-levels: relative numbers of steps of the runs, in ascending order
-powers: powers of the step that the combination removes from the error, one fewer than levels
-values (levels, times, ...): results of the runs
+levels: relative numbers of steps of the runs, in ascending order.
+powers: powers of the step that the combination removes from the error, one fewer than levels.
+values (levels, times, ...): results of the runs.
 """
 
 from __future__ import annotations

@@ -22,10 +22,10 @@ def sampled(
 ) -> float:
     """Step a model, record its states, and return the CPU time [s] of stepping and recording.
 
-    steps: number of steps before each sample after the first
-    advance(count): takes `count` steps
-    record(sample): stores the state of a sample
-    record_before(sample): stores values one step before a sample
+    steps: number of steps before each sample after the first.
+    advance(count): takes `count` steps.
+    record(sample): stores the state of a sample.
+    record_before(sample): stores values one step before a sample.
     The loop ends early if `advance` or `record` returns True. The CPU time excludes the recording of the start.
     """
     counts = list(steps)
@@ -51,8 +51,8 @@ def sampled_with_differences(
 ) -> tuple[Array, Array, Array, float]:
     """Positions, velocities and accelerations (samples + 1, ...), and the CPU time [s] of stepping.
 
-    counts: number of samples, and number of steps between samples
-    state(): the current positions and velocities
+    counts: number of samples, and number of steps between samples.
+    state(): the current positions and velocities.
     Accelerations are changes of `velocity()` over the last step, divided by dt [s]; they are NaN at t = 0.
     """
     states: list[tuple[Any, Any]] = []

@@ -116,9 +116,9 @@ class ExtraEngine(Engine, Valid):
     """The base class of an engine whose package is an extra of this project.
 
     The extra has the engine's name. Instances can be created without the package.
-    library: shared library of Linux that the wheel needs but does not contain, and its Debian package
-    apart: second pip command that the engine needs
-    capability: elements that the adapter builds
+    library: shared library of Linux that the wheel needs but does not contain, and its Debian package.
+    apart: second pip command that the engine needs.
+    capability: elements that the adapter builds.
     """
 
     library: ClassVar[tuple[str, str] | None] = None

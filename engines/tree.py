@@ -37,11 +37,11 @@ class Link:
     A free body has the coordinates x, y and rotation. A hinge is a pin, with a rotation, or a weld, without
     coordinates. A body in a slot has a displacement along the slot and, if it `turns`, a rotation.
 
-    parent: index of the parent body, or None for the ground
-    column: index of the body's first tree coordinate
-    arm (x, y) [m]: from the parent's centre of mass, or the world's origin, to the joint at t = 0
-    anchor (x, y) [m]: from the body's centre of mass to the joint at t = 0
-    direction (x, y): unit vector of the slot's line at t = 0
+    parent: index of the parent body, or None for the ground.
+    column: index of the body's first tree coordinate.
+    arm (x, y) [m]: from the parent's centre of mass, or the world's origin, to the joint at t = 0.
+    anchor (x, y) [m]: from the body's centre of mass to the joint at t = 0.
+    direction (x, y): unit vector of the slot's line at t = 0.
     """
 
     body: int
@@ -72,7 +72,7 @@ class Link:
 class Tree:
     """Links, with parents before children, and the joints that close loops.
 
-    kept: drives of rate zero between bodies that cannot turn relative to each other in the tree
+    kept: drives of rate zero between bodies that cannot turn relative to each other in the tree.
     """
 
     mechanism: Mechanism
@@ -202,8 +202,8 @@ class Tree:
     def _states(self, position: Any, rate: Any, change: Any, cos: Any, sin: Any) -> list[tuple[Any, ...]]:
         """x, y and the rotation since t = 0 of each body, with their first and second derivatives.
 
-        position, rate, change: tree coordinates and their two derivatives, as floats or arrays of times
-        cos, sin: functions of floats or arrays
+        position, rate, change: tree coordinates and their two derivatives, as floats or arrays of times.
+        cos, sin: functions of floats or arrays.
         Rotations begin at zero, so the pose at t = 0 is equal to the mechanism's start up to rounding.
         """
         start = self.mechanism.pose.tolist()

@@ -226,7 +226,7 @@ class BrowserWorld:
 class BrowserEngine(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    settings: parameters of the engine by name
+    settings: parameters of the engine by name.
     """
 
     forces_by: ClassVar[Enforcement] = "ours"

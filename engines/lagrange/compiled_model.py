@@ -197,8 +197,8 @@ class CompiledModel:
     ) -> int:
         """Fill the samples after `begin` by `every` steps of dt [s] per sample; return the last completed sample.
 
-        iterations: largest number of Newton iterations of a projection
-        poses, twists: contiguous arrays (samples, bodies, 3)
+        iterations: largest number of Newton iterations of a projection.
+        poses, twists: contiguous arrays (samples, bodies, 3).
         A run stops early if a contact has no cell or if the motion diverges.
         """
         return self._call(self.functions.fixed_steps, begin, poses, twists, tableau, iterations, dt, every)

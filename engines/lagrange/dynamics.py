@@ -69,7 +69,7 @@ ADAPTIVE_DOP853 = _embedded()
 def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot: float = 0.0) -> Array:
     """Solve matrix x = right for a symmetric, positive semidefinite matrix (rows, rows).
 
-    right: (rows,) or (rows, n)
+    right: (rows,) or (rows, n).
     The solution uses the Cholesky factorisation. If rows are known to be `dependent`, or if a pivot is below
     `least_pivot` times the diagonal, it is the minimum-norm solution. It is NaN if the matrix is not finite.
     """
@@ -92,10 +92,10 @@ def constrained_acceleration(
 ) -> tuple[Array, Array]:
     """Accelerations a (bodies, 3) and reactions r (rows,) with M a = f + J^T r and J a + compliance r = target.
 
-    pose, twist (bodies, 3)
-    target (rows,): by default the bias -(dJ/dt) v of ideal rows
-    compliance: 0, or a symmetric matrix (rows, rows) [1/kg, or 1/(kg m^2) in rows of torque]
-    least_pivot: see `solve_rows`
+    pose, twist (bodies, 3).
+    target (rows,): by default the bias -(dJ/dt) v of ideal rows.
+    compliance: 0, or a symmetric matrix (rows, rows) [1/kg, or 1/(kg m^2) in rows of torque].
+    least_pivot: see `solve_rows`.
     """
     free = np.broadcast_to(mechanism.unconstrained(pose, twist), pose.shape)
     if not mechanism.row_count:
@@ -132,9 +132,9 @@ def regularised_bias(
 class Dynamics:
     """Accelerations and projections of one mechanism.
 
-    soft (rows,): mask of the regularised rows, by default all rows
-    least_inverse_inertia: see `inverse_inertia`, which gives the unit of a soft row's compliance
-    least_pivot: see `solve_rows`
+    soft (rows,): mask of the regularised rows, by default all rows.
+    least_inverse_inertia: see `inverse_inertia`, which gives the unit of a soft row's compliance.
+    least_pivot: see `solve_rows`.
     """
 
     def __init__(

@@ -34,12 +34,12 @@ STEP_COSTS: dict[bool, dict[Integrator, float]] = {
 class Lagrange(Engine, Valid):
     """Ideal constraints by exact multipliers. Raises ValueError for settings that don't exist.
 
-    integrator: "euler" (semi-implicit, order 1), "rk4" (order 4) or "dop853" (order 8)
+    integrator: "euler" (semi-implicit, order 1), "rk4" (order 4) or "dop853" (order 8).
     stabilisation: "none" (gaps grow), "baumgarte" (springs and dampers that depend on the step) or "projection" (after
-        each step)
+        each step).
     tolerance: None for fixed steps of dt, or the relative and absolute tolerance of adaptive steps of "dop853"; dt is
         then the time between samples. To estimate the error of a run, compare it with a run at another tolerance.
-    compiled: whether steps are machine code if numba is installed; otherwise they are computed in numpy
+    compiled: whether steps are machine code if numba is installed; otherwise they are computed in numpy.
     """
 
     name = "lagrange"

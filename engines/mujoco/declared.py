@@ -8,7 +8,7 @@ MJX runs the same compiled model without the velocity terms of loops and rods, s
 """
 
 # pyright: reportAttributeAccessIssue=false
-# (MuJoCo's compiled bindings have no types.)
+# (MuJoCo's compiled bindings have no types.).
 
 from __future__ import annotations
 

@@ -147,7 +147,7 @@ def fixed_steps(system, storage, begin, poses, twists, tableau, iterations, dt, 
 
     Without stages the method is semi-implicit Euler. A run stops early before a pose that is not finite, or before a
     contact without a cell in its table (`missing_roll`). Returns the last completed sample.
-    iterations: number of Newton iterations after a step; 0 for no projection
+    iterations: number of Newton iterations after a step; 0 for no projection.
     """
     pose, twist = storage.pose, storage.twist
     copy_state(poses[begin], twists[begin], pose, twist)
