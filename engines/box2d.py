@@ -11,11 +11,11 @@ One step (its solver.c) has `substeps` sub-steps of h = dt / substeps. A sub-ste
 velocities with a soft term against the gaps, integrates the poses (p += v h), and corrects the velocities again without
 the soft term. The motion is that of the semi-implicit Euler method with the step h.
 
-A joint is a spring with a damping ratio of 2, which the engine solves implicitly (b2MakeSoft in solver.h). Its
-frequency is 60 Hz, or a quarter of the rate of sub-steps if that is less. For a spring of angular frequency w and
-damping ratio z, the soft term is the velocity w / (2 z + h w) * gap * s / (1 + s) with s = h w (2 z + h w). The second
-correction removes this velocity, so a gap closes at the rate w^2 h with w^2 = 1.4e5 / s^2. A shorter sub-step h closes
-a gap more slowly, but it also opens a smaller gap. Therefore no order is declared.
+A joint is a spring with a damping ratio of 2, which the engine solves implicitly (b2MakeSoft in solver.h). The
+frequency of a joint is 60 Hz, or a quarter of the rate of sub-steps if this is less. For a spring of angular frequency
+w and damping ratio z, the soft term is the velocity w / (2 z + h w) * gap * s / (1 + s) with s = h w (2 z + h w). The
+second correction removes this velocity, so a gap closes at the rate w^2 h with w^2 = 1.4e5 / s^2. A shorter sub-step h
+closes a gap more slowly, but it also opens a smaller gap. Therefore no order is declared.
 
 pyb2d3 0.11.1 has no function for the frequency of joints (`b2World_SetJointTuning`). But a user can set the frequencies
 of a weld joint. With `closing`, a Pin without a drive is a weld joint with almost no angular stiffness (SLACK), and the
@@ -57,9 +57,9 @@ SUBSTEP_COST = 0.8e-6
 NUMPY_FORCES_COST = 150e-6
 # The shortest length that the engine permits for a distance joint [m].
 SLOP = 0.005
-# The torque limit of a motor [N m]. It is below the largest number in single precision, 3e38.
+# The torque limit of a motor [N m]. The limit is below the largest number in single precision, 3e38.
 MOTOR_TORQUE = 1e30
-# The engine's limit on speeds [m/s], 400 as shipped. Its square must be finite in single precision.
+# The engine's limit on speeds [m/s], 400 as shipped. The square of the limit must be finite in single precision.
 SPEED_LIMIT = 1e18
 # The largest rotation of a body in a step [rad]. The engine reduces a larger rate, and the binding has no setting for
 # it.

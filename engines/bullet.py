@@ -11,8 +11,8 @@ step and passes them to the engine as external forces. The engine's damping is o
 
 One step (btMultiBodyDynamicsWorld) applies the forces at the old positions and corrects the velocities by impulses. In
 a step the impulses also close the share `erp` of a gap, 0.2 as shipped. Then the engine integrates the positions with
-the new velocities. This is the semi-implicit Euler method, which has order 1. Accelerations are changes of velocity
-over the last step, so they are unknown at t = 0.
+the new velocities. A step is therefore one of the semi-implicit Euler method, which has order 1. Accelerations are
+changes of velocity over the last step, so they are unknown at t = 0.
 
 No force accelerates a joint whose articulated inertia in the model's units is below SIMD_EPSILON = 2.2e-16
 (btMultiBody.cpp). A motor has no effect on a joint whose inertia is above 1 / SIMD_EPSILON = 4.5e15
@@ -95,8 +95,8 @@ class Bullet(ExtraEngine):
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """Order 1, since the method is semi-implicit Euler; joints of the tree have no gap.
 
-        No order is declared for loops in a prescribed motion. Their only error is the slip at which the iterations end,
-        and that slip does not depend on the step.
+        No order is declared for loops in a prescribed motion. The only error of such loops is the slip at which the
+        iterations end, which does not depend on the step.
         """
         loops = spanning_tree(mechanism).loops
         if loops and is_prescribed(mechanism) and self.residual:

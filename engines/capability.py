@@ -33,8 +33,8 @@ class Unsupported(Exception):
 class Lack:
     """Why an adapter does not build a kind of element.
 
-    `documentation`: address of the engine's documentation which says that the engine has no such element. It is "" if
-    the engine may have such an element.
+    `documentation`: address of the engine's documentation which says that the engine has no such element. The address
+    is "" if the engine may have such an element.
     """
 
     reason: str

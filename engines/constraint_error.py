@@ -44,8 +44,8 @@ def closing(mechanism: Mechanism, t: Array, pose: Array, at: Array | None = None
 
     The motion has the poses (times, bodies, 3) at the times t [s]. The displacement is -M^-1/2 B^+ gap with B = J
     M^-1/2. A dependent row (to RANK_TOLERANCE) or a row of velocities adds no displacement. The displacement is
-    computed at the `examined_times` and interpolated linearly. It is constant from the first pose that is not finite,
-    and zero without examined times.
+    computed at the `examined_times` and interpolated linearly. The displacement is constant from the first pose that is
+    not finite, and zero without examined times.
     """
     at = t if at is None else at
     examined = examined_times(mechanism, np.logical_and.accumulate(np.isfinite(pose).all(axis=(1, 2))))

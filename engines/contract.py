@@ -1,28 +1,28 @@
 """The contract of an engine under test. The suite uses only these members of an engine.
 
-1. Write a frozen dataclass that inherits from `Engine`. Its fields are the engine's settings, which the report prints.
-   Inherit from `reference.checks.Valid`, and decorate `build` and the call of a run with `validated`. Invalid settings,
-   steps and counts then raise ValueError and do not reach the engine's code.
+1. Write a frozen dataclass that inherits from `Engine`. The dataclass has the engine's settings as fields, which the
+   report prints. Inherit from `reference.checks.Valid`, and decorate `build` and the call of a run with `validated`.
+   Invalid settings, steps and counts then raise ValueError and do not reach the engine's code.
 2. Set `name` and `variant`, which together name the method in the report. `variant` is any printable string that is not
-   empty. Methods of one `family` share a colour and a marker in charts. By default the family is the name.
+   empty. Methods of one `family` share a colour and a marker in charts. By default `family` is equal to `name`.
 3. Set `packages` to the packages of Python or npm whose code computes the numbers. The report prints their versions.
 4. `build(mechanism, dt)` returns a `Run`, which is the model at t = 0 for steps of dt [s]. If the engine cannot
-   represent the mechanism, `build` raises `Unsupported` with one sentence. It must not leave out a joint or force
+   represent the mechanism, `build` raises `Unsupported` with one sentence. A model must not leave out a joint or force
    element. `capability` is the table of the elements that the engine builds. An engine that has only gravity calls
    `refuse_forces`.
 5. `run(samples, every)` takes `samples * every` steps and returns a `Trajectory` of samples + 1 states. State 0 is the
    start, and the engine reaches state k after `k * every` steps. Pose, twist and reaction of a state belong to the same
    instant. If the engine does not provide the reactions of a row, they are NaN at all samples, or at the first sample
    alone. A run can be called only once.
-6. `Trajectory.stepping` is the CPU time [s] of stepping and recording states. It includes pilot runs that choose steps
-   or iterations. It excludes the building of the model and the evaluation of the recorded states.
+6. `Trajectory.stepping` is the CPU time [s] of stepping and recording states. The CPU time includes pilot runs that
+   choose steps or iterations, but not the building of the model and the evaluation of the recorded states.
 7. `Trajectory.warnings` are `RunWarning`s or plain strings. `reset_at` [s] is the time at which the engine reset
    itself. A method that estimates its error sets `estimate`. From `unresolved_at` [s] on, the estimate exceeds the
    method's claim. The run continues after all these events. A method without an estimate claims only an order.
 8. `order(mechanism)` returns the expected convergence order of the errors as a `ConvergenceOrder`, which the gate
-   checks, or `NotDeclared` with the reason. It depends only on the settings and the mechanism.
-9. `step_cost(mechanism)` returns the approximate CPU time of a step [s], which decides how small steps may be. It is a
-   formula and no measurement, so that all machines run the same steps.
+   checks, or `NotDeclared` with the reason. The order depends only on the settings and the mechanism.
+9. `step_cost(mechanism)` returns the approximate CPU time of a step [s], which decides how small steps may be.
+   `step_cost` is a formula and no measurement, so that all machines run the same steps.
 10. `enforcement(joint, mechanism)` returns which code enforces the joint. "engine" means a joint, contact or coordinate
    of the engine. "engine, our rows" means the engine's solver with rows that our code writes during the steps. "ours"
    means that our code alone enforces the joint between steps of free bodies.
@@ -112,7 +112,7 @@ class ConvergenceOrder:
     order: order of the poses, and of each quantity below whose field is None.
     rate, gap, slip, energy: order of this quantity.
     reaction: order of the reactions; NaN if the engine provides no reactions.
-    integrator: order of the integrator alone, if the regularisation depends on the step and determines the other orders
+    integrator: order of the integrator, if a regularisation that depends on the step determines the other orders.
     differences: 0 if the engine provides forces; otherwise reactions are changes of velocity over dt / differences.
     amplified: factor on the rounding errors of poses, velocities and energies in a combination of runs.
     """

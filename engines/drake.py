@@ -8,7 +8,7 @@ distance constraint, and a Gear is a coupler constraint between two revolute joi
 spatial forces.
 
 *default* is a plant in discrete time with the solver SAP (Castro, Permenter and Han, "An Unconstrained Convex
-Formulation of Compliant Contact", 2022). Its integrator is semi-implicit Euler. SAP regularises a constraint
+Formulation of Compliant Contact", 2022). SAP integrates by semi-implicit Euler. SAP regularises a constraint
 (`sap_holonomic_constraint.cc`): a step closes half of a gap, and the compliance is (0.1 / 2 pi)^2 of the row's inverse
 inertia. So gaps are of second order in the step, and the integrator determines the error of the angles. The source code
 fixes the factor 0.1. The settings for contacts, `set_sap_near_rigid_threshold` and the contact approximation, have no
@@ -21,8 +21,8 @@ constraints and no PD gains, so the adapter refuses mechanisms with a loop, a ge
 In this plant Drake 1.51 accepts weld and coupler constraints, and Drake 1.58 also accepts ball constraints. A step of
 the free four-bar then takes 7 us instead of 50 us, and the error is nearly that of SAP. The adapter keeps forces
 constant during a step, since CENIC would differentiate them with an increment that depends on the unit. The adapter
-passes on Drake's refusal of a constraint. It also refuses drives, since CENIC turns them against the desired rate (1.51
-and 1.58), and bodies of zero mass in slots, since CENIC returns NaN for them.
+passes on Drake's refusal of a constraint. The adapter also refuses drives, since CENIC turns joints against the desired
+rate (1.51 and 1.58), and bodies of zero mass in slots, since CENIC then returns NaN.
 
 A constraint with the world's body ends the process by a segmentation fault (1.51 and 1.58). Therefore the ground is a
 body that is welded to the world.
@@ -58,8 +58,8 @@ Array = NDArray[np.float64]
 Scheme = Literal["discrete", "runge_kutta5", "cenic"]
 # CPU time [s] of a step of three bodies, and number of evaluations of the force elements in a step, by scheme.
 DRAKE_STEP_COSTS = {"discrete": (50e-6, 1), "runge_kutta5": (25e-6, 6), "cenic": (10e-6, 1)}
-# Rate gain of a drive, relative to the largest inertia divided by the step. It is far above SAP's near-rigid limit.
-# Drake refuses an angle gain of zero, so ANGLE_GAIN is so small that it has no effect.
+# Rate gain of a drive, relative to the largest inertia divided by the step. The gain is far above SAP's near-rigid
+# limit. Drake refuses an angle gain of zero, so ANGLE_GAIN is so small that it has no effect.
 STIFF_RATE = 1e12
 ANGLE_GAIN = 1e-200
 # Limit of the integrator's step relative to dt. A continuous plant then takes exactly one step per dt.

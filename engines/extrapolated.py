@@ -105,8 +105,8 @@ class Extrapolated(EngineWrapper, Valid):
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """The order is the first power that is not removed; rounding grows by the sum of the absolute weights.
 
-        If reactions are changes of velocity, their error has more powers of the step. Their declared order is therefore
-        only twice the inner order.
+        If reactions are changes of velocity, their error has more powers of the step. The declared order of reactions
+        is therefore only twice the inner order.
         """
         inner = self.engine.order(mechanism)
         if isinstance(inner, NotDeclared):
@@ -175,8 +175,8 @@ class ExtrapolatedRun(OneShot):
     def _needs_further_run(self, extrapolated: Trajectory, runs: list[Trajectory]) -> bool:
         """Whether a further run decides the error.
 
-        A further run is needed if the estimate is near the claim. It is also needed if the last difference may be small
-        by chance. Then the ratio of the two earlier differences predicts a difference near the claim.
+        A further run is needed if the estimate is near the claim. A further run is also needed if the last difference
+        may be small by chance. Then the ratio of the two earlier differences predicts a difference near the claim.
         """
         low, high = OPEN
         if len(self._levels) < 3 or extrapolated.estimate is None:

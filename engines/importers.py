@@ -31,8 +31,8 @@ class Importer:
         return self.reading(model, ReadingTerms(without)).mechanism
 
 
-mujoco = Importer("engines.mujoco")  # It reads MJCF, URDF or a mujoco.MjModel.
-pymunk = Importer("engines.pymunk")  # It reads script.py[:NAME] or a pymunk.Space.
+mujoco = Importer("engines.mujoco")  # Reads MJCF, URDF or a mujoco.MjModel.
+pymunk = Importer("engines.pymunk")  # Reads script.py[:NAME] or a pymunk.Space.
 
 
 def read_object(model: Any, terms: ReadingTerms = AS_IT_IS) -> Reading:

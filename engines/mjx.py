@@ -11,9 +11,10 @@ step, the error is proportional to the square of the multiple. For the free four
 rad with a time constant of two steps, as in MuJoCo before 3.7. With the five steps of our tuned variant it is 4.58e-3
 rad.
 
-The solver ends if no residual of the forces exceeds 1e-8, since `mjx.math.norm` then returns zero. The tolerance then
-has no effect. The limit of 1e-8 has a unit, so the adapter uses the smallest possible unit of mass (`_smallest_unit`).
-With the larger unit of the MuJoCo adapter, a gear would have no effect on light bodies next to heavy bodies.
+The solver ends if no residual of the forces exceeds 1e-8, since `mjx.math.norm` then returns zero. The solver's
+tolerance then has no effect. The limit of 1e-8 has a unit, so the adapter uses the smallest possible unit of mass
+(`_smallest_unit`). With the larger unit of the MuJoCo adapter, a gear would have no effect on light bodies next to
+heavy bodies.
 
 The compilation of a model takes 5 to 30 s, which is part of the build time. JAX caches the program for models of the
 same structure. The cache is in the user's cache folder, or in the folder that the variable JAX_COMPILATION_CACHE_DIR

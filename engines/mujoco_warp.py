@@ -19,8 +19,8 @@ solver's tolerance to at least 1e-6. Without a tolerance a step takes ten times 
 Our adapter sets the tolerance after `put_model`, relative to the inertia of the coordinates without drives
 (`engines.mujoco.model`). Otherwise the large inertia of a drive would end the solver at once.
 
-Warp compiles kernels at their first use. This takes minutes for the first model on a computer, and seconds for a model
-of another structure. Warp's variable WARP_CACHE_PATH names the folder of the compiled kernels.
+Warp compiles kernels at their first use. The compilation takes minutes for the first model on a computer, and seconds
+for a model of another structure. Warp's variable WARP_CACHE_PATH names the folder of the compiled kernels.
 
 The package mujoco-warp requires the package mujoco, which overwrites the files of mujoco-core. Therefore install
 mujoco-warp without dependencies: pip install --no-deps mujoco-warp. Newton's solver `SolverMuJoCo` uses this package.

@@ -22,7 +22,7 @@ origin its error is 4e-11 rad.
 
 As shipped the engine does not reduce the gap of a loop. With a `correction` c [1/s] the Baumgarte gains are c^2 and 2
 c. Depending on the motion and the step, the gains increase or reduce the errors of both integrators. Therefore no
-variant sets them. The page `engines` shows their effect on the free four-bar.
+variant has a `correction`. The page `engines` shows their effect on the free four-bar.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
 Integrator = Literal["euler", "rk4"]
-# Regularisation of the proximal solver. It is far above rounding because the rows out of the plane are empty.
+# Regularisation of the proximal solver. The value is far above rounding because the rows out of the plane are empty.
 PROXIMAL_REGULARISATION = 1e-10
 PROXIMAL_TOLERANCE = 1e-14  # Tolerance of the proximal solver's residual.
 PROXIMAL_ITERATIONS = 20  # Iteration limit of the proximal solver; a four-bar linkage needs two.

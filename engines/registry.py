@@ -47,8 +47,9 @@ def load(reference: str, folder: Path | None = None) -> tuple[Engine, ...]:
 _variants = registered("crosscheck.engines", ENGINE, method_name)
 _methods = registered("crosscheck.methods", ENGINE, method_name, {method_name(e): e for e in _variants.values})
 
-# The engines that are run in every scene. These are engines as shipped, tuned by documented settings, and extended by
-# our code. Ideal constraints with integrators of order 1 and 4, and engines of other distributions, belong to them too.
+# The engines that are run in every scene. The list has engines as shipped, tuned by documented settings, and extended
+# by our code. Ideal constraints with integrators of order 1 and 4, and engines of other distributions, belong to them
+# too.
 VARIANTS: tuple[Engine, ...] = _variants.values
 
 # VARIANTS and further methods, grouped by engine.
@@ -64,7 +65,7 @@ _optional = registered(
 )
 
 
-# Engines that are extras. They need not be installed, since their rows may come from another computer.
+# Engines that are extras. Such engines need not be installed, since their rows may come from another computer.
 OTHERS: tuple[Engine, ...] = _optional.values
 INSTALLED: tuple[Engine, ...] = tuple(engine for engine in OTHERS if not engine.missing)
 # How to install an engine that is not installed, by its name.

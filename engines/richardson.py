@@ -70,9 +70,9 @@ def expected_error(
     The `differences` decrease with k if the runs have an error expansion. The last difference is the error of the
     extrapolation without the coarsest run. The ratio of successive differences predicts the remaining error. Ratios
     increase in asymptotic series, so the larger of the last ratio and its extrapolation is used. The estimate is
-    CAUTION times the prediction. It is at least the share `least` (times,) of the last difference, which may cross
-    zero. It is at most the error that a single wrong run would cause. Ratios use the largest differences up to each
-    time.
+    CAUTION times the prediction. The estimate is at least the share `least` (times,) of the last difference, which may
+    cross zero. The estimate is at most the error that a single wrong run would cause. Ratios use the largest
+    differences up to each time.
     """
     steps = differences(values, levels, powers)
     with np.errstate(all="ignore"):

@@ -5,8 +5,8 @@ engine. This module has closed forms for two round curves and for a round curve 
 table of polynomials interpolates exact contacts.
 
 Vectors are complex numbers x + i y. The body's origin in the frame of the ground is P = point + a with the arm a =
-r_{O'/C}. The derivatives of P by the rotation theta are P' = i a (18.66) and P'' = s' e_n - a with s' = ds/dtheta.
-`reference.rolling.kinematics` defines the symbols.
+r_{O'/C}. The derivatives of P by the rotation theta are P' = i a (18.66) and P'' = s' e_n - a, where s is the arc
+length and s' = ds/dtheta. `reference.rolling.kinematics` defines the symbols.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ EXAMINED = np.arange(-32, 32, 4)  # Indices of the cells that determine the widt
 # nodes.
 SAMPLED = np.append(0.0, np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES))
 COMPARED = np.cos(math.pi * np.arange(NODES + 1) / NODES)
-# Sufficient error relative to the largest P''. It corresponds to a few rounding errors of a contact.
+# Sufficient error relative to the largest P''. The value is that of a few rounding errors of a contact.
 ROUNDING = 1e-14
 # Largest permitted error relative to the largest P''. Otherwise exact contacts are used, which take a hundred times as
 # long.
@@ -144,8 +144,8 @@ class RoundOnRound:
         self._start = rolling.theta
         (self._centre, around), (self._middle, radius) = ground, body
         self._turning = radius / (around + radius)
-        # Factors on the tangent of three vectors: centre of the ground to contact, contact to centre of the body, and
-        # their sum.
+        # Three vectors as factors on the tangent: from the ground's centre to the contact, from the contact to the
+        # body's centre, and the sum of both.
         self._ground, self._radius, self._between = -1j * around, -1j * radius, -1j * (around + radius)
         self._angle = float(rolling.contact(rolling.theta).tangent_angle)
 

@@ -10,7 +10,7 @@ import numpy as np
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
-# Tolerance on sample times relative to dt. It is above rounding and far below half a step.
+# Tolerance on sample times relative to dt. The tolerance is above rounding and far below half a step.
 TIME_TOLERANCE = 1e-6
 
 Flaw = tuple[str, str]  # the value found, and the value expected

@@ -11,7 +11,7 @@ CACHE = "PLANAR_CROSSCHECK_CACHE"
 
 
 def cache_folder() -> Path:
-    """The folder that the variable CACHE names, or a folder in the system's cache folder. It may not exist."""
+    """The folder that the variable CACHE names, or a folder in the system's cache folder. The folder may not exist."""
     if os.environ.get(CACHE):
         return Path(os.environ[CACHE]).absolute()
     if sys.platform == "win32":

@@ -71,7 +71,7 @@ def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot
 
     right: (rows,) or (rows, n).
     The solution uses the Cholesky factorisation. If rows are known to be `dependent`, or if a pivot is below
-    `least_pivot` times the diagonal, it is the minimum-norm solution. It is NaN if the matrix is not finite.
+    `least_pivot` times the diagonal, it is the minimum-norm solution. The solution is NaN if the matrix is not finite.
     """
     if not dependent:
         factor, solution, failed = _solve_positive(matrix, right, lower=True)
@@ -110,8 +110,8 @@ def constrained_acceleration(
 def inverse_inertia(matrix: Array, soft: NDArray[np.bool_], least: float = LEAST_INVERSE_INERTIA) -> Array:
     """The inverse inertias (rows,) of soft rows under the constraints of the rigid rows, from J M^-1 J^T.
 
-    They are the diagonal of the Schur complement, but at least `least` times the diagonal of J M^-1 J^T. The values of
-    rigid rows are the diagonal of J M^-1 J^T.
+    These inverse inertias are the diagonal of the Schur complement, but at least `least` times the diagonal of J M^-1
+    J^T. The values of rigid rows are the diagonal of J M^-1 J^T.
     """
     out = np.diag(matrix).copy()
     if not soft.all():

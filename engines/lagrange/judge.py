@@ -81,7 +81,7 @@ class _JudgeRun(OneShot):
         """Gaps and slips (times, 2 rows) in units of the mechanism's length and time scale, minus the rounding of
         positions.
 
-        They are NaN at times with a state that is not finite.
+        Gaps and slips are NaN at times with a state that is not finite.
         """
         mechanism, out = self._mechanism, np.full((len(trajectory.t), 2 * self._mechanism.row_count), np.nan)
         finite = np.isfinite(trajectory.pose).all(axis=(1, 2)) & np.isfinite(trajectory.twist).all(axis=(1, 2))

@@ -46,7 +46,7 @@ class RowSelection(IntEnum):
 # quadratically, so the next correction would be below rounding.
 CLOSED = 1e-9
 # Smallest inverse inertia of a soft row under the constraints of the rigid rows, relative to the inverse inertia of the
-# row alone. It is used if the soft row depends on the rigid rows.
+# row alone. The limit is used if the soft row depends on the rigid rows.
 LEAST_INVERSE_INERTIA = 0.1
 CELL_SIZE = 20  # Number of complex numbers in a cell of `engines.rolling_table`.
 MOST_STAGES = 16  # Largest number of stages of a method, including those for dense output.

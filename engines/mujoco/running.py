@@ -33,8 +33,8 @@ MAX_RESIDUAL = 1e-5
 # Number of instants, in addition to the samples, at which the error is estimated. A motion with fewer double steps has
 # fewer instants.
 ESTIMATE_INSTANTS = 1000
-# A motion is at rest if accelerations relative to the largest earlier acceleration are smaller than this. They are then
-# rounding.
+# A motion is at rest if accelerations relative to the largest earlier acceleration are smaller than this. Accelerations
+# of a motion at rest are rounding.
 AT_REST = 1e-9
 # Smallest displacement that can cause a warning about reactions, relative to the mechanism's length.
 MIN_DISPLACEMENT = FORCES * RANK_TOLERANCE

@@ -80,7 +80,7 @@ class StepDoubling:
     def unresolved_from(self, error: Array) -> int | None:
         """The number of steps after which the motion is unresolved; None if no error (times, bodies, 3) exceeds CLAIM.
 
-        It is the count of the first error above CLAIM, or the count after the last `conclusive` index if that is
+        This is the count of the first error above CLAIM, or the count after the last `conclusive` index if that is
         smaller. Without a conclusive index it is 0.
         """
         above = np.flatnonzero(~(self.relative(error) <= CLAIM))

@@ -3,7 +3,7 @@
 MuJoCo has no joint for a skate or for rolling, but its solver accepts any row J a = right. An equality of a tendon
 reserves the row, and the callback `mjcb_control` overwrites the row in `efc_J` and `efc_aref`. In all four stages of
 RK4, MuJoCo calls the callback after it computes the reference accelerations and before the solver (mj_forwardSkip in
-engine_forward.c). User rows need the dense Jacobian and no islands. They also need a primal solver (Newton or CG),
+engine_forward.c). User rows need the dense Jacobian and no islands. User rows also need a primal solver (Newton or CG),
 since the dual solver builds its matrix before the callback.
 
 `write_rows` computes the motion of the bodies from the tree coordinates, evaluates the rows of each joint, and
@@ -38,8 +38,8 @@ Row = tuple[float, float, float, float, float, float, float]
 
 ROW_KINDS = ("skate", "slot", "rod", "roll")
 SKATE, SLOT, _, ROLL = range(len(ROW_KINDS))
-# A plan is an array. It contains a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION numbers
-# for each link and the ground. The following names are indices in these parts.
+# A plan is an array. The array contains a header, LINK numbers for each link, JOINT numbers for each joint, and MOTION
+# numbers for each link and the ground. The following names are indices in these parts.
 LINK_COUNT, JOINT_COUNT, FIRST_ROW, AHEAD, HEADER = range(5)  # AHEAD [s]: the pose is predicted for this time.
 # SLIDE, ACROSS and ROTATION are columns, or -1. START_X, START_Y and START_ANGLE are the pose at t = 0.
 PARENT, SLIDE, ACROSS, ROTATION, START_X, START_Y, START_ANGLE = range(7)

@@ -41,7 +41,7 @@ from reference.validators import Rule
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]  # eigenvalues of S
 
-# Residual of the slowest mode after a step. It is half of the stability limit, since rho changes with the pose.
+# Residual of the slowest mode after a step. The value is half of the stability limit, since rho changes with the pose.
 RESIDUAL = 0.25
 MIN_ITERATIONS = 5
 # Largest number of rows for which all eigenvalues are computed. For more rows only the smallest eigenvalue is computed,

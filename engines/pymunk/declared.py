@@ -2,7 +2,7 @@
 
 A step drifts before it solves, so the law uses the constraint rows at the pose after the drift. A joint corrects a
 fraction of its gap. The law gives the velocities that satisfy the rows and have the smallest mass-weighted distance
-from the velocities without joints. It is valid for converged iterations, so `instants` makes enough iterations.
+from the velocities without joints. The law is valid for converged iterations, so `instants` makes enough iterations.
 """
 
 from __future__ import annotations

@@ -46,9 +46,9 @@ class Pymunk(Engine, Valid):
 
     `iterations`: iterations over the joints in a step. `error_bias`: fraction of a gap, in [0, 1], that remains after
     one second. If one of these settings is "contraction", it follows from the convergence of the iterations
-    (`engines.pymunk.iterations`). A step then makes at least `min_iterations`. It makes more than ITERATION_LIMIT only
-    if the product of iterations and joints is at most `max_work`. `startup_steps`: number of steps in each stage of the
-    start-up, in which the iterations decrease; 0 for no start-up.
+    (`engines.pymunk.iterations`). A step then makes at least `min_iterations`. A step makes more than ITERATION_LIMIT
+    iterations only if the product of iterations and joints is at most `max_work`. `startup_steps`: number of steps in
+    each stage of the start-up, in which the iterations decrease; 0 for no start-up.
 
     `leapfrog`: start with half a kick and average the velocities. The steps then skip the checks of `Space.step`, which
     concern changes of the model. `skate`, `roll`, `slot`: constructions of these joints (`joints.slide` and

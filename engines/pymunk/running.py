@@ -83,7 +83,7 @@ def _visited_bodies(space: pymunk.Space) -> list[int]:
 class Recording:
     """Poses and velocities of the centres of mass at the samples, in the mechanism's order.
 
-    The engine stores velocities together with the positions at t. They are the velocities at t, or at t + dt/2 in a
+    The engine stores velocities together with the positions at t. The velocities belong to t, or to t + dt/2 in a
     leapfrog.
     """
 

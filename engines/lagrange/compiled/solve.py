@@ -1,9 +1,9 @@
 """Solve the row system J M^-1 J^T reaction = right (Schur complement of the KKT system), O(bodies) for a chain.
 
 The factor L D L^T needs no scaling, since scaled rows give the same digits. If a pivot relative to the diagonal is
-below the limit, the row depends on earlier rows. Its reaction is set to zero, which does not change the motion. The
-condition number of J M^-1 J^T is the square of that of J M^-1/2. If a pivot is small, the residual is therefore
-computed with J, and the system is solved for a correction (corrected seminormal equations, Bjorck 1987).
+below the limit, the row depends on earlier rows. The reaction of a dependent row is set to zero, which does not change
+the motion. The condition number of J M^-1 J^T is the square of that of J M^-1/2. If a pivot is small, the residual is
+therefore computed with J, and the system is solved for a correction (corrected seminormal equations, Bjorck 1987).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import math
 from engines.lagrange.compiled import inlined, inner, merged, unsigned
 from engines.lagrange.records import LEAST_INVERSE_INERTIA, RowLaw, RowSelection
 
-# Largest pivot of a dependent row, relative to the diagonal, if all rows are independent at t = 0. It is a thousand
-# times the rounding of the product.
+# Largest pivot of a dependent row, relative to the diagonal, if all rows are independent at t = 0. The limit is a
+# thousand times the rounding of the product.
 INDEPENDENT_PIVOT = 1e-13
 # Largest pivot of a dependent row if rows are dependent at t = 0, as RANK_TOLERANCE of `reference.rows`. The stages of
 # a step have gaps, whose squares perturb the pivots.
@@ -23,7 +23,8 @@ DEPENDENT_PIVOT = 1e-9
 WELL_CONDITIONED = 1e-2
 # Systems with more rows are always corrected once, since the pivots of a long chain do not show the condition number.
 FEW_ROWS = 24
-# Largest number of corrections. Each must halve the residual, and four are enough to reach rounding.
+# Largest number of corrections. Each correction must halve the residual, and four corrections are enough to reach
+# rounding.
 MOST_CORRECTIONS = 4
 
 
@@ -216,8 +217,8 @@ def solve(system, corrections):
 def assemble_compliant(system):
     """Set the matrix to J M^-1 J^T plus compliances, in units of the rows' inverse inertias, on the diagonal.
 
-    The unit is the inverse inertia under the constraints of the rigid rows (the diagonal of the Schur complement). It
-    is at least LEAST_INVERSE_INERTIA times the inverse inertia of the row alone.
+    The unit is the inverse inertia under the constraints of the rigid rows (the diagonal of the Schur complement). The
+    unit is at least LEAST_INVERSE_INERTIA times the inverse inertia of the row alone.
     """
     reaction, residual, equations = system.reaction, system.residual, system.equations
     rows = len(system.rows)

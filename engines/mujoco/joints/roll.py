@@ -29,7 +29,7 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 Cone = Literal["pyramidal", "elliptic"]
-# Distance at which shapes collide, relative to the mechanism's length. It is above the rounding of a contact.
+# Distance at which shapes collide, relative to the mechanism's length. The distance is above the rounding of a contact.
 TOUCH = 1e-12
 # A contact is lost if its reaction relative to the largest reaction is smaller than this. The limit is far above
 # rounding.

@@ -26,8 +26,8 @@ from reference.joints import Skate
 from reference.mechanism import Mechanism
 
 SkateBy = Literal["rows", "predicted tendon", "blade"]
-# Constructions whose rows change once per step. They use the integrator Euler, since four stages with the same row
-# would cost more without a smaller error.
+# Constructions whose rows change once per step. Such constructions use the integrator Euler, since four stages with the
+# same row would not reduce the error.
 STEPWISE: tuple[SkateBy, ...] = ("predicted tendon",)
 
 # Coefficients of friction along and across the blade. The first direction is along the capsule, as a maintainer of

@@ -63,7 +63,8 @@ def _add_half(builder: ModelBuilder, slot: Slot) -> None:
     """Let a half of the second body slide and turn in the first body, and weld it to the other half.
 
     The halves are equal, since a lighter half would increase the compliance of the weld. If the second body is the
-    ground, the auxiliary body does not move. It then has half the mass of the first body, which has no effect.
+    ground, the auxiliary body does not move. The auxiliary body then has half the mass of the first body, which has no
+    effect.
     """
     spec, mechanism = builder.spec, builder.mechanism
     first, second = builder.index(slot.first), builder.index(slot.second)

@@ -20,7 +20,8 @@ Ends = tuple[int, int, Array, Array]  # Two groups, and two points [m] of the wo
 WeightedJoints = Sequence[tuple[int, float]]  # Joints of the model with their factors in a sum of coordinates.
 EQUALITY, TENDON = mujoco.mjtObj.mjOBJ_EQUALITY, mujoco.mjtObj.mjOBJ_TENDON
 # Smallest ratio of armature to inertia at which a hinge counts as driven. The armature divides the accelerations of the
-# hinge by this ratio. They are then a tenth of the accepted difference from the judge's accelerations.
+# hinge by this ratio. The remaining accelerations are a tenth of the accepted difference from the judge's
+# accelerations.
 DRIVING_RATIO = 1e7
 TORQUE_SCALE = 10  # index of a weld's torquescale in eq_data
 

@@ -52,10 +52,10 @@ def declared(
 ) -> Callable[[Array, Array], RowRegularisation]:
     """The regularisation of the rows as a function of gaps (rows,) [m, rad] and a pose (bodies, 3).
 
-    `directions` (3 bodies, nv) are the twists at t = 0 due to unit velocities of MuJoCo's coordinates. They show by
-    which factors MuJoCo's rows differ from the mechanism's rows. `drift` (3 bodies,) are the accelerations at t = 0 for
-    zero accelerations of the coordinates, which replace the velocity term that equalities of tendons lack (up to
-    4.0.1). `moved(pose)` is a mujoco.MjData at a pose, after mj_fwdPosition. It is needed only with the flag
+    `directions` (3 bodies, nv) are the twists at t = 0 due to unit velocities of MuJoCo's coordinates. These twists
+    show by which factors MuJoCo's rows differ from the mechanism's rows. `drift` (3 bodies,) are the accelerations at t
+    = 0 for zero accelerations of the coordinates, which replace the velocity term that equalities of tendons lack (up
+    to 4.0.1). `moved(pose)` is a mujoco.MjData at a pose, after mj_fwdPosition. `moved` is needed only with the flag
     `diagexact`, for which the diagonal depends on the pose.
     """
     begin = np.cumsum([0, *(joint.size for joint in mechanism.joints)])

@@ -22,10 +22,10 @@ correct.
 - "groove": a `GrooveJoint` in the ground, which our code places before each step at the exact pose after the drift. The
   motion has order 1, and the slip is rounding. Between two moving bodies it is a `MovedPinJoint`.
 
-A `MovedPinJoint` is a `PinJoint` that our code places before every step. Its row is the relative velocity of two
-anchors along the line between them. One anchor is the point of the joint. The other anchor is a point of the first
-body, such that the line between the anchors is perpendicular to the slot or blade. The row is therefore correct for a
-Slot or a Skate between any two bodies.
+A `MovedPinJoint` is a `PinJoint` that our code places before every step. The row of this joint is the relative velocity
+of two anchors along the line between them. One anchor is the point of the joint. The other anchor is a point of the
+first body, such that the line between the anchors is perpendicular to the slot or blade. The row is therefore correct
+for a Slot or a Skate between any two bodies.
 """
 
 from __future__ import annotations
