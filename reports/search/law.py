@@ -112,7 +112,7 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkippe
     """Errors of an engine's first steps. The engine declares equations for single instants, which the steps must
     satisfy.
 
-    `engines.Engine.instants` returns both sides. Errors are relative to the largest term of the equations.
+    `engines.Engine.instants` returns both sides of the equations. Errors are relative to the largest term.
     """
     declared_instants = _instants(engine, mechanism)
     if isinstance(declared_instants, NotDeclared):

@@ -36,7 +36,7 @@ class Column(StrEnum):
     SETTINGS = "documented settings"
     CODE = "with our code"
     NAIVE = "naive"
-    WHOLE = ""  # for engines without a variant in COLUMN_OF_VARIANT
+    WHOLE = ""  # column for engines without a variant in COLUMN_OF_VARIANT
 
 
 COLUMN_OF_VARIANT = {"default": Column.SHIPPED, "tuned": Column.SETTINGS, "extended": Column.CODE}

@@ -1,4 +1,4 @@
-"""Tests of the exercises: the page's answers are those of the reference, and are the numbers of the solutions."""
+"""Tests of the exercises: the answers of the page agree with the reference and with the numbers in the solutions."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ FOUR_BAR = DrivenFourBar().four_bar
 AC = FOUR_BAR.crank + FOUR_BAR.coupler
 SLIDER_PLACE = 0.15 + math.sqrt(0.81 - 0.09 * 0.75)
 LINKS = (math.pi / 6, math.pi / 3)
-# The answers by the reference or in closed form.
+# Answer -> expected value, from the reference or in closed form.
 EXPECTED = {
     "tip_speed": float(np.hypot(*velocities(1.0, LINKS, (2.0, -1.0)).b)),
     "freedoms_with_handle": 3.0,
     "centre_above": float(instant_centre(np.zeros(3), np.array([3.0, 0.0, 2.0]))[0][1]),
-    "moving_circle": 0.25,  # Cardan's circles: half of the ring's radius
+    "moving_circle": 0.25,  # half of the ring's radius, by Cardan's circles
     "contact_speed": 3 / (1 / 0.25 - 1 / 0.5),
     "commutator_aside": float(commutator_displacement(math.radians(20), 0.5)[1]),
     "sidestep_turn": math.degrees(sidestep(0.4, 0.5, math.pi / 6)[0].turn),
@@ -96,7 +96,7 @@ EXPECTED = {
 
 def test_the_answers_of_the_page_are_those_of_the_reference(answers):
     assert set(answers) == set(EXPECTED) == set(EXERCISES)
-    assert answers == pytest.approx(EXPECTED, rel=1e-5)  # the largest rates and forces are those of samples
+    assert answers == pytest.approx(EXPECTED, rel=1e-5)  # the largest rates and forces are those at the samples
 
 
 @pytest.mark.parametrize("name", EXERCISES)
@@ -128,7 +128,7 @@ def test_the_shapes_of_the_page_are_the_centrodes_of_the_reference(page):
 def test_a_drawn_circle_is_the_first_harmonic(page):
     expected = {"cosines": [[2, 0], [1, 0], [0, 0], [0, 0]], "sines": [[0, 0], [0, 1], [0, 0], [0, 0]]}
     for name, values in expected.items():
-        # The drawn points are the corners of a polygon with 200 sides, 1e-4 from the circle.
+        # The drawn polygon with 200 corners is within 1e-4 of the circle.
         assert np.array(page["circle"][name]) == pytest.approx(np.array(values), abs=2e-4)
 
 

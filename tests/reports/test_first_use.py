@@ -1,4 +1,4 @@
-"""The ideal motion of a new installation, which is computed in numpy while that is faster than compiling."""
+"""Tests of the ideal motion in a new installation. It is computed in numpy while this is faster than compiling."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NUMPY_NOTE = "following the ideal motion"
 
 @pytest.fixture
 def new_installation(monkeypatch, tmp_path):
-    """The state of an installation without machine code; returns the list of the noted stages."""
+    """An installation without machine code, and the list of the reported stages."""
     monkeypatch.setattr(first_use, "is_cold", lambda adaptive: True)
     monkeypatch.setattr(loading, "_cache_folder", lambda: tmp_path)
     return list[str]()
@@ -34,7 +34,7 @@ def test_the_first_motion_from_numpy_has_the_accuracy_that_the_judge_claims(new_
 
 @pytest.mark.parametrize("spent", [1e-3, 1.01])
 def test_the_code_is_compiled_if_numpy_would_take_longer(new_installation, spent, monkeypatch):
-    """Numpy is not used if it has already taken the time of compilation, or if the motion would exceed that time."""
+    """Numpy is not used if the motion would take longer than the compilation, or if the time of compilation is over."""
     loading.add_numpy_seconds(spent * first_use.COMPILE_SECONDS)
     monkeypatch.setattr(first_use, "MOTION_PER_RUN", 1e9)
     first_use.ideal_motion(FreeFourBar().mechanism(), SAMPLES, SPACING, 1e-4, new_installation.append)

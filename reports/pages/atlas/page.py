@@ -46,7 +46,7 @@ def stored_columns(path: Path = RESULTS / FILE) -> tuple[StoredColumn, ...]:
 
 
 def columns_of(stability_map: StabilityMap) -> list[StoredColumn]:
-    """The columns of a map, with displayed names of variants. Registered methods come first."""
+    """The columns of a map with displayed names of variants. Columns of registered methods come first."""
     from engines.registry import VARIANTS, method_name
 
     order = {method_name(engine): index for index, engine in enumerate(VARIANTS)}

@@ -168,7 +168,7 @@ LARGE_SIZES = (50, 100)
 COSTLY_SIZES = (300, 1000)  # chains of these sizes are run for a few steps only, to measure the CPU time
 PENDULUM_SAMPLES = 5
 FEW_STEPS = 4
-MORE_STEPS = 40  # for cheap methods at COSTLY_SIZES, whose first step is slower than later steps
+MORE_STEPS = 40  # for cheap methods at COSTLY_SIZES, since their first step is slower than later steps
 
 FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coordinates="free")
 # Error estimates are switched off, because their runs would increase the CPU time of a step.

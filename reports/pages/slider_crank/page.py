@@ -66,7 +66,7 @@ LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 def delay(material: Material) -> dict[str, Any]:
     """`later`: the difference [s] between the times of the last two tasks in LEAVING. `nearer`: logarithm of the ratio
-    of the initial distances in these tasks."""
+    of both initial distances."""
     far, near = (material.finished(task) for task in LEAVING[-2:])
     later = near.number("when") - far.number("when") if far and near else UNMEASURED
     return {"later": later, "nearer": math.log(LEAVING[-2].angle / LEAVING[-1].angle)}
