@@ -306,7 +306,7 @@ def refuse_a_bad_start(mechanism: Mechanism) -> None:
 def open_joint(mechanism: Mechanism, gap: Array, slip: Array, pose: Array, twist: Array, size: float) -> str | None:
     """A sentence about the row with the largest violation at the start, or None if all violations are allowed.
 
-    gap, slip (rows,); pose, twist (bodies, 3); size: length of the mechanism [m].
+    gap and slip are (rows,), pose and twist (bodies, 3); size [m] is the mechanism's length.
     """
     speed = np.abs(twist[:, :2]).max() + size * np.abs(twist[:, 2]).max()
     # The tolerance is relative to the mechanism's length and speed, and above the rounding of a pose far from the

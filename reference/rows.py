@@ -128,7 +128,7 @@ class JointGroup:
 
     joint: each numeric field is an array with the joints along its first axis. first, second (joints,): indices of the
     bodies; the ground has the index after the last body. rows (joints, size): indices of the rows in the mechanism.
-    adds: the group is a second or later term of a coupling, whose row is a sum over groups. offset: constant of a
+    adds: whether the group is a second or later term of a coupling, so that its rows are added. offset: constant of a
     coupling, which the gap of the first term subtracts.
     """
 

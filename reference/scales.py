@@ -52,9 +52,9 @@ def time_scale(
 ) -> float:
     """The time of one radian of the mechanism's fastest motion [s], or 1 for a mechanism at rest without forces.
 
-    The rates of motions are a body's rotation rate, a drive's rate, speed over length, the pendulum frequency sqrt(g /
-    length), and the rate under each force alone. The rate under a force is a spring's frequency, a damper's rate of
-    decay, or sqrt(a / length) for a constant acceleration a.
+    The fastest motion has the largest of these rates: rotation rates of bodies and drives, speed over length, the
+    pendulum frequency sqrt(g / length), and the rates under single forces. The rate under a force is a spring's
+    frequency, a damper's decay rate, or sqrt(a / length) for an acceleration a.
     """
     by_name = {body.name: body for body in bodies}
     rates = [math.sqrt(math.hypot(*gravity) / length)]

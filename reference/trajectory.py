@@ -112,7 +112,7 @@ class Trajectory(Valid):
         return any(RunWarning.of(warning).origin != "adapter" for warning in self.warnings)
 
     def table(self) -> dict[str, Array]:
-        """Columns (times,) by name: "t" [s], and "x 0", "y 0" [m], "angle 0" [rad] for each body's number.
+        """Columns (times,) by name, which are "t" [s] and, for body 0, "x 0", "y 0" [m] and "angle 0" [rad].
 
         For pandas: `pandas.DataFrame(trajectory.table())`.
         """

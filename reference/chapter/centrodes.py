@@ -36,7 +36,7 @@ States = Annotated[Numbers, of_shape("...", 3)]
 def instant_centre(pose: States, twist: States) -> tuple[Array, Array]:
     """The point without velocity, r_{C/O'} = k x v_{O'} / omega, in space and in the body (..., 2) [m].
 
-    pose, twist (..., 3) of one body. NaN if the rotation rate is zero, since the centre is then at infinity.
+    pose and twist (..., 3) are of one body. NaN if the rotation rate is zero, since the centre is then at infinity.
     """
     rate = np.where(twist[..., 2] == 0, np.nan, twist[..., 2])
     arm = perpendicular(twist[..., :2]) / rate[..., None]
@@ -61,9 +61,9 @@ def centrode_error(truth: Trajectory, other: Trajectory, body: int = 0) -> Array
 class Centrodes(Valid):
     """The body curve and the space curve of a motion, sampled in the order of increasing rotation.
 
-    pose (n, 3) [m, m, rad]; space (n, 2) [m]: the instant centre in the world; body (n, 2) [m]: the instant centre in
-    the body's frame; error [m]: the change of the curves if every second sample is left out, a bound on the error of
-    interpolation.
+    pose (n, 3) [m, m, rad] is the body's motion. space and body (n, 2) [m] are the instant centre in the world and in
+    the body's frame. error [m] is the change of the curves without every second sample, a bound on the interpolation
+    error.
     """
 
     pose: Poses
@@ -129,7 +129,7 @@ def centrodes(t: Annotated[Array, of_shape("n")], pose: Poses, twist: Poses) -> 
     """The centrodes of a body with poses and twists (n, 3) at times (n,) [s].
 
     Raises InvalidMechanism for fewer than 16 samples, times that don't increase, numbers that are not finite, and a
-    rotation rate that vanishes or changes its sign (the centre is then at infinity; cut the motion there).
+    rotation rate that vanishes or changes its sign. The centre is then at infinity; cut the motion there.
     """
     t, pose = _checked(t, pose)
     if twist.shape != pose.shape:
@@ -224,8 +224,8 @@ Points = Annotated[int, from_to(2, LARGEST_COUNT)]
 class Shapes(Valid):
     """Points at equal distances along two boundaries; points of equal index touch each other.
 
-    space (n, 2) [m]: the fixed part in the world's frame; body (n, 2) [m]: the moving part in the body's frame; pose
-    (n, 3) [m, m, rad]: the pose of the moving part at each contact; error [m]: see `Centrodes`.
+    space and body (n, 2) [m] are the fixed part in the world and the moving part in the body's frame. pose (n, 3) [m,
+    m, rad] is the moving part's pose at each contact. `Centrodes` explains error [m].
     """
 
     space: Places

@@ -3,7 +3,7 @@
 A linear condition on a body's velocity that is the same at every position and direction is a u + b v + c theta' = 0
 with constants a, b, c. Here u, v [m/s] is the velocity of the centre of mass along the body's axes. If (a, b) = 0, the
 condition is theta' = 0, which is integrable. Otherwise the condition is a skate: a point P has no velocity along the
-blade's left normal n = (a, b) / |(a, b)|. P is any point with dot(n, k x P) = c / |(a, b)|. The skate is not
+blade's left normal n = (a, b) / |(a, b)|. The points P satisfy dot(n, k x P) = c / |(a, b)|. The skate is not
 integrable, since dot(w, curl w) = -(a^2 + b^2) < 0.
 """
 

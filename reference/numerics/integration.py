@@ -19,7 +19,7 @@ from scipy.integrate import DOP853
 from reference.checks import InvalidMechanism
 
 Array = NDArray[np.float64]
-Rates = Callable[[Array], Array]  # from states (..., states) to their rates, autonomous
+Rates = Callable[[Array], Array]  # states to rates
 
 # Relative error of a step, about the smallest one that double precision allows.
 STEP_TOLERANCE = 3e-14

@@ -1,11 +1,11 @@
 """The base of boundaries that are described by arc length, and the boundaries line, side, disc and hole.
 
-The convention (it replaces the chapter's "counter-clockwise", which fails for holes and straight ground):
+These conventions replace the chapter's "counter-clockwise", which fails for holes and straight ground.
 
-* every boundary is traversed with its OWN MATERIAL ON THE LEFT: counter-clockwise round a disc, clockwise round a hole;
-* the tangent angle is the direction of traversal, unwrapped;
-* curvature = d angle / d arc is positive if the boundary bends towards its material, so it is negative for a ring;
-* flat ground with its material below is therefore traversed towards -x.
+* A boundary is traversed with its MATERIAL ON THE LEFT: counter-clockwise round a disc, clockwise round a hole.
+* The tangent angle is the direction of traversal, unwrapped.
+* The curvature d angle / d arc is positive if the boundary bends towards its material, and negative for a ring.
+* Flat ground with its material below is traversed towards -x.
 
 When B rolls on A the tangents are opposite, angle_A + pi = theta + angle_B. The contact moves forward on A and backward
 on B, so that arc_A + arc_B is constant, with d arc_A / d theta = 1 / (curvature_A + curvature_B).

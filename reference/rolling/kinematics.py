@@ -25,11 +25,11 @@ class Rolling(Valid):
     """The curve `body` rolls without slip on the fixed curve `ground`; for conventions see `reference.rolling.curves`.
 
     At the rotation `theta` [rad], which is not wrapped, the contact has the arc lengths `ground_arc` and `body_arc`
-    [m]. `Rolling.at_angle` and `Rolling.at_arcs` compute one of these three numbers from the other two.
+    [m]. `Rolling.at_angle` computes `body_arc`, and `Rolling.at_arcs` computes `theta`.
 
-    Raises InvalidMechanism if the tangents at the start differ, if curvature_A + curvature_B is below `NEAR_CONFORMAL`
-    of the larger curvature, if an arc is not on its curve, or if a closed curve is not inside its ring. If the curves
-    are neither convex nor a ring, a second contact is not detected.
+    Raises InvalidMechanism for different tangents at the start, curvatures that nearly cancel (`NEAR_CONFORMAL`), arcs
+    that are not on their curve, and closed curves that are not inside their ring. If the curves are neither convex nor
+    a ring, a second contact is not detected.
     """
 
     body: Curve

@@ -123,7 +123,7 @@ class NFourBar(Scene):
         down = direction_of(angle)
         top = np.zeros((len(angle), n + 1, 2))  # forces of the couplers on each crank's top
         top[:, :, 1] = -coupler[:, None, 1] * np.where(np.arange(n + 1) % n == 0, 0.5, 1.0)
-        # I phi'' = l down x top + (l/2) down x (m g) is solved for the horizontal force, whose lever arm is -l down_y.
+        # The balance of moments is solved for the horizontal force, whose lever arm is -l down_y.
         moment = m * size**2 / 3 * acceleration + 0.5 * m * self.gravity * size * down[:, 0]
         top[:, :, 0] = (size * down[:, 0, None] * top[:, :, 1] - moment[:, None]) / (size * down[:, 1, None])
         out = np.zeros((len(angle), 2 * (3 * n + 1)))

@@ -210,7 +210,7 @@ class TwoFeet(OneFoot):
         turning[..., 2, 2] = 1
         shank, thigh = self.lengths[0], self.lengths[1]
         for first, second, a, b in ((0, 1, lower, upper), (4, 3, far_lower, far_upper)):
-            between = np.sin(b - a)  # zero for a straight knee, which has no solution
+            between = np.sin(b - a)  # zero for straight knees
             turning[..., first, 0] = np.cos(b) / (shank * between)
             turning[..., first, 1] = np.sin(b) / (shank * between)
             turning[..., second, 0] = -np.cos(a) / (thigh * between)

@@ -99,10 +99,10 @@ class FreelyPinnedBody(PinnedBody):
 class ChaplyginSleigh(Scene):
     """Chaplygin's sleigh: a body that slides on one skate.
 
-    mass [kg]; inertia [kg m^2] about the centre of mass, which is `offset` [m] ahead of the skate, or behind it if
-    negative; speed [m/s] of the skate along its heading and turning_rate [rad/s] at t = 0, of any sign; start: the
-    skate's pose. A point mass, with zero inertia, has a motion but no mechanism. Raises InvalidMechanism if inertia and
-    offset are zero.
+    mass [kg]; inertia [kg m^2] about the centre of mass. The centre of mass is `offset` [m] ahead of the skate, or
+    behind the skate if negative. speed [m/s] along the skate and turning_rate [rad/s] at t = 0 have any sign. start:
+    the skate's pose. A point mass, with zero inertia, has a motion but no mechanism. Raises InvalidMechanism if inertia
+    and offset are zero.
     """
 
     name: ClassVar[str] = "sleigh"

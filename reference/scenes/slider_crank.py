@@ -248,9 +248,9 @@ class SliderAtDeadCentre(FreeSliderCrank):
 class SlottedLever(PlacedScene):
     """The crank turns at a constant `rate` [rad/s] from `angle` [rad]; the crank's pin slides in a slot of the lever.
 
-    Lengths `crank` and `lever` [m]; the lever's pivot is at (-distance, 0) [m]; masses of uniform bars [kg]; gravity
-    [m/s^2] downwards. The slot begins at the lever's pivot, at the angle `slant` [rad] to the lever's bar, so that the
-    bar's centre of mass is not on the slot. Raises InvalidMechanism unless crank < distance, so that the lever swings.
+    `crank` and `lever` [m] are lengths of uniform bars with masses [kg]. The lever's pivot is at (-distance, 0) [m].
+    The slot begins at the lever's pivot, at the angle `slant` [rad] to the lever's bar, so that the bar's centre of
+    mass is not on the slot. Raises InvalidMechanism unless crank < distance, so that the lever swings.
     """
 
     name: ClassVar[str] = "slotted_lever"

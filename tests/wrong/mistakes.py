@@ -33,7 +33,7 @@ from reports.search.planted import Misbuilt
 Some = TypeVar("Some")
 
 NUMBER_KINDS = ("mass", "inertia", "length", "gravity", "point", "angle", "size", "rate")
-# In mechanisms with more bodies or joints, only the first, middle and last body or joint is changed.
+# Number of bodies or joints up to which all are changed, not only the first, the middle and the last.
 MOST_TRIED = 6
 
 

@@ -147,8 +147,8 @@ class DrivenFourBar(FourBarScene):
 class FreeFourBar(FourBarScene):
     """The linkage moves under its weight from rest or with a crank rate. The crank may pass its limits.
 
-    Errors are drifts of energy and time and grow about linearly, since one freedom has constant energy. So the horizon
-    is the duration. Errors grow faster at a change point and with the energy of an unstable equilibrium.
+    Errors are drifts of energy and time and grow about linearly, since one freedom has constant energy. The duration is
+    therefore the horizon. Errors grow faster at a change point and with the energy of an unstable equilibrium.
     """
 
     name: ClassVar[str] = "free_four_bar"

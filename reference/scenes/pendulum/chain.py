@@ -269,8 +269,8 @@ class Chain(Valid):
     def divergence(self, angle: ArrayLike, rate: ArrayLike, t: Times, starts: Count = 3) -> Array:
         """The largest growth factor of a small difference of starts at times t (times,) [s].
 
-        `starts` neighbouring motions are integrated. The angles at their starts differ by PERTURBATION in pseudo-random
-        directions with a fixed seed. The size of a difference is its largest angle.
+        `starts` neighbouring motions are integrated. The start angles of these motions differ by PERTURBATION in
+        pseudo-random directions with a fixed seed. The size of a difference is its largest angle.
         """
         t, start = sample_times("chain", t), self._start(angle, rate)
         until = max(float(t.max(initial=0.0)), math.ulp(1.0))

@@ -144,10 +144,10 @@ def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Pos
 class Convoy:
     """The motion of a car and its trailers, with the first jack-knife.
 
-    t (times,) [s]; pose (times, vehicles, 3) [m, m, rad]: middles of the axles and headings; speed (times, vehicles)
-    [m/s] along the headings, which changes sign for a folded trailer; error (times,) [m or rad]: bound on the
-    integration error; jackknifed_at [s]: the first time at which a joint angle exceeds the limit; jackknifed: the
-    number of that trailer, from 1.
+    pose (times, vehicles, 3) [m, m, rad] has the middles of the axles and the headings at t (times,) [s]. speed (times,
+    vehicles) [m/s] is along the headings and changes sign for a folded trailer. error (times,) [m or rad] is a bound on
+    the integration error. jackknifed_at [s] is the first time at which a joint angle exceeds the limit; jackknifed is
+    the number of the trailer, from 1.
     """
 
     t: Array
