@@ -84,7 +84,7 @@ def _relative(found: Array, expected: Array, size: Array, scales: tuple[Array, .
 
 
 def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array) -> float:
-    """The largest rotation [rad] of a body or of a constraint direction in a step of dt [s] from a state.
+    """The largest rotation [rad] in a step dt [s] from a state. Bodies and directions of constraints are compared.
 
     A constraint direction turns at about the rate |J' v| / (|J| |v|). Above one radian, the result of every integrator
     is dominated by rounding.

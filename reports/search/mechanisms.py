@@ -202,7 +202,7 @@ Whole = Callable[[int, int], int]
 
 
 def recipe_of_shape(engine: Engine, seed: int, number: int, kinds: tuple[str, ...], decades: int) -> Recipe:
-    """Case `number` of a seed, with one of the first SHAPE_COUNT shapes of the seed that the engine can build."""
+    """Case `number` of a seed. Its shape is one of the first SHAPE_COUNT shapes that the engine can build."""
     shapes = _shapes(engine, seed, kinds, decades)
     if not shapes:
         return recipe(seed, number, kinds, decades)

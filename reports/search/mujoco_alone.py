@@ -38,7 +38,7 @@ class RawBody:
     metre. `angle`: angle relative to the parent, in steps of 0.3 rad. `slides`: number of slides along the axes x and y
     of the body's frame. `turns`: whether the body has a hinge at the origin of its frame. `centre`: position of the
     centre of mass, in tenths of a metre. `mass`, `inertia`: mass and moment of inertia about the centre as steps of
-    `parts.ladder`. `velocity`: rates of both slides and of the hinge, in steps of 0.5 m/s and 0.5 rad/s.
+    `parts.ladder`. `velocity`: rates of both slides in steps of 0.5 m/s, and of the hinge in steps of 0.5 rad/s.
     """
 
     parent: int = 0

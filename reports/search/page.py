@@ -140,8 +140,8 @@ def _shown_oracles(cases: Sequence[CaseResult]) -> list[Oracle]:
 
 
 def _count_rows(cases: Sequence[CaseResult]) -> list[list[str]]:
-    """A row for each subject, with the numbers of its cases, of refused cases, and of judged and failed cases by
-    oracle."""
+    """A row for each subject, with the number of cases, the number of refused cases, and by oracle the judged and
+    failed cases."""
     subjects: dict[str, list[CaseResult]] = {}
     columns = [oracle.column for oracle in _shown_oracles(cases)]
     for case in cases:

@@ -92,8 +92,8 @@ class RecipeLink:
 
 @dataclass(frozen=True)
 class Recipe:
-    """A mechanism, described by integers. `gravity` is in m/s^2. `decades`: powers of ten of the units of length, mass
-    and time."""
+    """A mechanism, described by integers. `gravity` is in m/s^2. `decades`: the units of length, mass and time as
+    powers of ten."""
 
     parts: tuple[RecipeBody, ...]
     links: tuple[RecipeLink, ...]

@@ -32,7 +32,7 @@ from reports.search.subjects import Adapted
 
 Array = NDArray[np.float64]
 
-# Fault -> the wrong field. The name of a fault begins with a kind. The error of a point is relative to the length
+# Fault -> the wrong field. The name of a fault begins with a kind. The error of a wrong point is relative to the length
 # scale. Errors of fields in FAULT_ANGLES are in radians, and other errors are relative to the value.
 FAULT_FIELDS = {
     "pin": "second_point",

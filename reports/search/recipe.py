@@ -40,8 +40,8 @@ from reports.search.parts import (
 
 Array = NDArray[np.float64]
 Point = tuple[Decimal, Decimal]
-# Limit of the ratio of the smallest to the largest singular value of the rows. With a smaller ratio, rounding changes
-# the forces and the motion in every engine.
+# Limit for the smallest singular value of the rows divided by their largest singular value. With a smaller ratio,
+# rounding changes the forces and the motion in every engine.
 DEPENDENCE_LIMIT = 1e-3
 SINGULAR_LIMIT = 1e-6  # Limit of the same ratio in mechanisms with toggles or folds.
 # If all projected velocities are smaller, relative to those of the recipe, they are rounding errors.

@@ -61,8 +61,7 @@ def run_search(
     """Results of `cases` cases of each subject, and reduced findings. Results and findings are stored in `folder`.
 
     `seed`: the seed, or None for the first published seed. `kinds`: an empty sequence selects all kinds. `seconds`:
-    time limit,
-    after which no task is started.
+    time limit, after which no task is started.
     """
     kinds = kinds or tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
     chunks = make_chunks(subjects, plan.published_seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)

@@ -39,7 +39,7 @@ Growing = list[tuple[Line2D, Array]]  # A line, and the error at each time [rad]
 
 FRAMES = 100  # Approximate upper bound of the number of samples in an animation.
 SECONDS = 8.0  # Duration of one repetition.
-PAUSE = 0.12  # Pause at the end of a repetition of an SVG, as a fraction of SECONDS.
+PAUSE = 0.12  # Pause of an SVG before it is repeated, as a fraction of SECONDS.
 KEYS = 60  # Number of key frames of an SVG. The browser interpolates linearly between key frames.
 RATE = 25  # Frames per second of a film. In a GIF the duration of a frame must be a multiple of 0.01 s.
 INCHES = (12.8, 5.6)
@@ -59,8 +59,7 @@ class Take(Look):
     """A picture of the exact motion of a scene and of the motions of several methods.
 
     methods: triples (label, engine, steps between samples). samples: number of sampling intervals, or None for that of
-    the
-    scene.
+    the scene.
     """
 
     scene: Scene
@@ -165,7 +164,7 @@ def _looks(shown: Shown, theme: Theme) -> list[tuple[str, float, Any]]:
 
 
 def decades(errors: Sequence[Array]) -> tuple[int, int]:
-    """Return the lowest and the highest power of ten of the error axis, which covers most samples of each method."""
+    """Return the limits of the error axis as powers of ten (low, high). The axis covers most samples of each method."""
     positive = [error[np.isfinite(error) & (error > 0)] for error in errors]
     positive = [error for error in positive if len(error)] or [np.ones(1)]
     high = int(np.ceil(np.log10(max(error.max() for error in positive))))

@@ -204,7 +204,8 @@ def between(mechanism: Mechanism, joint: Joint, pose: Array) -> tuple[Array, Arr
 
 
 def place_of(joint: Joint, first: Array, second: Array) -> Array:
-    """Return positions (times, 2) [m] of the contact of a Roll, or of another joint's point on the second body."""
+    """Return positions (times, 2) [m] of a joint, which are those of the contact of a Roll, else of the point on the
+    second body."""
     if isinstance(joint, Roll):
         return first[:, :2] + rotated(first[:, 2], joint.rolling.contact(second[:, 2] - first[:, 2]).point)
     return point_path(second, getattr(joint, "second_point", (0.0, 0.0)))

@@ -27,7 +27,7 @@ THREADED = "cpHastySpace.c"  # This source file needs threads, which the page do
 
 
 def source_digest(release: str) -> str:
-    """Return the digest of munk2d.c, of the compiler's flags and of pymunk's release, which determines Munk2D."""
+    """Return the digest of munk2d.c, the compiler's flags and pymunk's release. The release determines Munk2D."""
     return digest(repr((release, SHIM.read_text(encoding="utf-8"), FLAGS)))
 
 

@@ -69,8 +69,7 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
     ("rows", "advised", "tenth"),
     [
         # Pairs (error, cost) of the settings; the user's settings come first. `tenth` is the setting with a tenth of
-        # the
-        # advised error.
+        # the advised error.
         ([(1e-5, 1.0), (1e-6, 2.0)], 0, 1),
         ([(1e-5, 1.0), (2e-5, 0.5)], 1, None),
         ([(1e-3, 1.0), (2e-5, 0.5), (1e-5, 3.0)], 1, None),

@@ -225,7 +225,7 @@ def test_a_bad_model_is_refused_in_one_sentence(tmp_path, word):
 def test_a_script_can_use_files_and_modules_in_its_folder(tmp_path):
     home, paths = Path.cwd(), list(sys.path)
     (tmp_path / "length.txt").write_text("0.5")
-    # names of a module of Python, of a package of this suite, and of no other module
+    # the names are those of a Python module, of a package of this suite, and of no other module
     for name in ("csv", "reference", "local"):
         (tmp_path / f"{name}.py").write_text("MINE = True")
     (tmp_path / "swing.py").write_text(

@@ -34,7 +34,7 @@ def test_the_first_motion_from_numpy_has_the_accuracy_that_the_judge_claims(new_
 
 @pytest.mark.parametrize("spent", [1e-3, 1.01])
 def test_the_code_is_compiled_if_numpy_would_take_longer(new_installation, spent, monkeypatch):
-    """Numpy is not used if the motion would take longer than the compilation, or if the time of compilation is over."""
+    """Numpy is not used if it has already run, or would run, longer than a compilation takes."""
     loading.add_numpy_seconds(spent * first_use.COMPILE_SECONDS)
     monkeypatch.setattr(first_use, "MOTION_PER_RUN", 1e9)
     first_use.ideal_motion(FreeFourBar().mechanism(), SAMPLES, SPACING, 1e-4, new_installation.append)

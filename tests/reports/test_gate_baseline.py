@@ -192,7 +192,7 @@ def test_run_and_check_compares_each_row_and_its_cost_with_the_baselines_row_of_
         return {**same, coarsest: replace(same[coarsest], errors={**same[coarsest].errors, "angle": value})}
 
     lacking = {key: value for key, value in same.items() if key != coarsest}
-    # With other versions a number may be up to three times as large.
+    # With other versions of packages, a number may be up to three times as large.
     for cells, versions, new, reported in (
         (same, "", 0, []),
         (angle(1e-12), "", 0, ["it was 1e-12"]),

@@ -23,8 +23,8 @@ from tests.wrong.mistakes import NUMBER_KINDS, Mistake, MistakeTrial, Sighting, 
 # Relative mistakes that have to be noticed: 1e-4 by methods that reach rounding, 1e-2 with documented settings.
 EXTENDED: dict[Engine, float] = {pymunk.EXTENDED: 1e-4, mujoco.EXTENDED: 1e-4}
 OTHERS: dict[Engine, float] = {Lagrange("rk4", "projection"): 1e-4, pymunk.TUNED: 1e-2, mujoco.TUNED: 1e-2}
-# Limit of the estimated CPU time of a run of a wrong model [s]; the coarsest step is always tried. The exact solver has
-# a higher limit, since it is interpreted.
+# Limit of the estimated CPU time [s] for a run with a wrong model. The coarsest step is always tried. The exact solver
+# has a higher limit, since it is interpreted.
 LIMIT, CONTROL_LIMIT = 0.15, 1.3
 
 # A mistake has no effect if it changes an error by less than this fraction of the mistake. Forces are differences of

@@ -277,7 +277,7 @@ def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, 
 
 
 def charted_methods(rows: Sequence[Measurement], field: str) -> set[tuple[str, str]]:
-    """The pairs (scene, method) of each engine's default and of its most accurate method in this scene."""
+    """Pairs (scene, method). For each scene, an engine has its default and its most accurate method."""
     chosen: set[tuple[str, str]] = set()
     for scene, engine in dict.fromkeys((row.scene, row.engine) for row in rows):
         of_engine = [row for row in rows if (row.scene, row.engine) == (scene, engine)]

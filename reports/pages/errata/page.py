@@ -233,7 +233,8 @@ class Erratum:
 
     @property
     def by_tolerance(self) -> Mapping[float, float]:
-        """Tolerance -> error of an integration that the chapter prints without its tolerance; empty for other slips."""
+        """Tolerance -> error, for a slip in which the chapter integrates without stating a tolerance; empty for other
+        slips."""
         return self.names.get("by_tolerance", {})
 
 

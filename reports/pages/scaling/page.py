@@ -155,7 +155,7 @@ def _look(series: MethodSeries, variants: Mapping[str, Sequence[str]]) -> dict[s
 
 
 def fitted(series: MethodSeries) -> str:
-    """The exponent of the cost and the range of sizes of the fit, such as '1.0 (50 to 1000)'."""
+    """The exponent of the cost with the fitted range of sizes, such as '1.0 (50 to 1000)'."""
     least, most = SIZES_OF_FIT.get(series.method, (0, math.inf))
     points = [point for point in series.points if least <= point.size <= most]
     slope, first, last = exponent([p.size for p in points], [p.step for p in points])
