@@ -36,7 +36,7 @@ class AppliedForces:
 
     @classmethod
     def of(cls, forces: Sequence[ForceElement], index: Mapping[str | None, int]) -> AppliedForces:
-        """Group the elements by class; the key None of `index` is the ground."""
+        """Group the elements by class. In `index` None is the ground."""
         by_class: dict[type, list[Any]] = {}
         coupled: list[tuple[CoupledForce, Ends]] = []
         for element in forces:

@@ -23,7 +23,7 @@ class Element(Valid):
 
     `stackable`: several elements of the class can be evaluated as one element with arrays in the numeric fields.
     `acts_along_line`: the element acts along the line between its two points.
-    `unit_exponents`: field names to the exponents of mass and time in the unit; 0 for other fields.
+    `unit_exponents`: a mapping from fields to the exponents of mass and time in the unit, 0 by default.
     """
 
     stackable: ClassVar[bool] = True

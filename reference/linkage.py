@@ -19,9 +19,9 @@ def linkage(
 ) -> Mechanism:
     """Bars between named points [m], pinned to each other at common points and to the ground at the points of `ground`.
 
-    bars: name of each bar to the names of its end points, such as ("A", "B") or "AB"; density [kg/m]; gravity [m/s^2].
-    The linkage starts at rest. If more than two bars meet at a point, every other bar is pinned to the first bar.
-    Raises InvalidMechanism.
+    bars: a mapping from bars to the names of both end points, ("A", "B") or "AB"; density [kg/m]; gravity [m/s^2]. The
+    linkage starts at rest. If more than two bars meet at a point, every other bar is pinned to the first bar. Raises
+    InvalidMechanism.
     """
     bodies, joints = list[Body](), list[Pin]()
     first: dict[str, tuple[str | None, Vector]] = {name: (None, _place(points, name)) for name in ground}

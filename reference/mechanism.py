@@ -236,7 +236,7 @@ class Mechanism(Valid):
 
     @validated
     def degrees_of_freedom(self, pose: Annotated[Floats, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:
-        """The numbers of configuration and velocity freedoms from the rank of the rows at a pose, by default the start.
+        """The numbers of configuration and velocity freedoms, from the rank of the rows at a pose or the start.
 
         A skate removes only a freedom of velocity; a drive removes a freedom of velocity and a freedom of configuration
         (box 18.3). The cost is O(bodies^3). Raises InvalidMechanism if the rows take more than LARGEST_RANK.
@@ -275,7 +275,7 @@ Array = NDArray[np.float64]
 # Allowed violation of a row at the start, relative to the mechanism's length or speed. This tolerance is far above
 # rounding errors and far below mistakes in the input.
 START_TOLERANCE = 1e-9
-# Rounding error of a coordinate of a placed body or joint, in units of the coordinate's last digit.
+# Rounding error of coordinates of bodies and joints, in units of the last digit.
 PLACEMENT_ROUNDINGS = 64
 
 

@@ -92,8 +92,8 @@ def distance(first: AnyArray, second: AnyArray, first_point: Any, second_point: 
 
 
 def direction_row(first: AnyArray, second: AnyArray, second_point: Any, x: Any, y: Any) -> AnyArray:
-    """The row (..., 1, 6) of the velocity along (x, y) (...) of a point of the second body, relative to the first
-    body's material at the same place. Columns are x, y, angle of the first body and then of the second body.
+    """The row (..., 1, 6) of a velocity component in the direction (x, y) (...): a point of the second body moves
+    relative to the material of the first body. Columns are x, y, angle of the first body and then of the second body.
     """
     point_x, point_y = from_body(second[..., 2], second_point)
     arm_x, arm_y = second[..., 0] + point_x - first[..., 0], second[..., 1] + point_y - first[..., 1]

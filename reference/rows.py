@@ -242,7 +242,7 @@ def stacked(joints: Sequence[Any]) -> Any:
 
 # Number of rows from which the band solver is used; for fewer rows the dense solver is as fast.
 MANY_ROWS = 24
-# Rows are dependent if a squared pivot is below this fraction of the largest squared pivot, as for ranks.
+# Rows are dependent if a squared pivot is below this fraction of the largest squared pivot.
 SMALLEST_PIVOT = 1e-9
 
 

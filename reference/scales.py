@@ -11,8 +11,7 @@ from reference.forces import ForceElement
 from reference.joints import Body, Joint
 from reference.plane import components
 
-# If a contact is at the centre of mass, distances below this fraction of the radius of curvature count as rounding
-# errors.
+# Distances on a body below this fraction of a radius of curvature count as rounding errors.
 ROUNDED = 1e-12
 
 

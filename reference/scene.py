@@ -254,7 +254,7 @@ def with_settings(scene: Scene, settings: Mapping[str, str]) -> Scene:
 
 
 def with_distinct_names(scenes: tuple[Scene, ...]) -> tuple[Scene, ...]:
-    """The scenes; a name that occurs twice is extended by the numbers that differ from the defaults."""
+    """The scenes with distinct names; equal names are extended by numbers that differ from the defaults."""
     names = [scene.name for scene in scenes]
     return tuple(
         named(_replaced(scene, {}), _name(scene.name, _changed_fields(scene)))

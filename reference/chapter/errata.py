@@ -153,7 +153,7 @@ def exchanged_in_j(bar: BarState) -> Array:
     return np.array([right(bar)[0], bar.length * second])
 
 
-# Number of the erratum to the bar (0 is OA, 1 is AB) and the wrong formula of the bar's acceleration.
+# A mapping from errata to the bar (0 is OA, 1 is AB) and the wrong formula of the bar's acceleration.
 PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
     23: (0, omega_in_the_first_term),
     25: (1, omega_in_the_first_term),
@@ -191,8 +191,8 @@ def accelerations(
     rates: tuple[float, float],
     angular_accelerations: tuple[float, float],
 ) -> TwoPoints:
-    """Problem 18.5.2: a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1); a_B/A has the
-    same form with phi2.
+    """In problem 18.5.2, a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1), and a_B/A
+    has the same form with phi2.
     """
     first, second = (
         length * rotation_acceleration(rate, alpha, direction_of(np.asarray(phi)))

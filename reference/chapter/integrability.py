@@ -118,8 +118,8 @@ def growth(rows: Rows, place: Place) -> tuple[int, ...]:
     """The dimensions of D, D + [D, D], D + [D, D] + [D, [D, D]] and so on at a place, until they no longer grow.
 
     The first number counts velocity freedoms, and the last number counts configuration freedoms. Examples are (1,) for
-    a pinned body, (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular: no bracket
-    vanishes only there, as for a trailer at a right angle to its car.
+    a pinned body, (2, 3) for a skate, (2, 3, 4) for a car with a steered wheel. The place must be regular. A trailer at
+    a right angle to its car is not, since a bracket vanishes only there.
     """
     generators = _fields(rows, np.asarray(place, dtype=float))
     basis = _extended_basis(np.zeros((len(place), 0)), [np.real(field(place)) for field in generators])
@@ -141,7 +141,7 @@ def growth(rows: Rows, place: Place) -> tuple[int, ...]:
 
 
 def _extended_basis(basis: Array, vectors: list[Array]) -> Array:
-    """An orthonormal basis (coordinates, dimension) of the space of a basis and more vectors."""
+    """An orthonormal basis (coordinates, dimension) of the space that a basis and more vectors span."""
     for vector in vectors:
         rest = vector - basis @ (basis.T @ vector)
         rest -= basis @ (basis.T @ rest)
@@ -183,7 +183,7 @@ def mechanism_is_integrable(mechanism: Mechanism, pose: Pose | None = None) -> b
 
 @validated
 def freedoms_by_brackets(mechanism: Mechanism, pose: Pose | None = None) -> tuple[int, ...]:
-    """The `growth` of a mechanism's freedoms from velocity freedoms to configuration freedoms; time is not counted.
+    """The `growth` of a mechanism's freedoms, from the velocity freedoms to the configuration freedoms.
 
     This is a check of `Mechanism.degrees_of_freedom`, since it does not use `holonomic`. A car with locked steering has
     one freedom of velocity and follows one curve, so the skates are integrable together. `degrees_of_freedom` counts

@@ -211,7 +211,7 @@ def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarse
 
 
 def error_of(rates: Rates, start: ArrayLike, t: ArrayLike, unit: ArrayLike) -> Array:
-    """A bound (times,) on the error of `motion`: COARSER times the difference to a coarser rule, plus rounding."""
+    """A bound (times,) on the error of `motion`, from the difference to a coarser rule, plus rounding."""
     times = np.atleast_1d(np.asarray(t, dtype=float))
     until = max(float(times.max()), math.ulp(1.0))
     return bound(*(motion(rates, start, until, unit, factor)(times) for factor in (1.0, COARSER)))

@@ -105,7 +105,7 @@ def units_of_motion(rates: Rates, start: ArrayLike, coordinate: float = 1.0) -> 
     half = len(state) // 2
     fastest, hardest = np.abs(state[half:]).max(), np.abs(rates(state)[half:]).max()
     turning = float(max(fastest, math.sqrt(hardest * coordinate))) / (2 * math.pi)
-    return np.repeat([coordinate, turning or 1.0], half)  # any unit is valid for a motion that stays at rest
+    return np.repeat([coordinate, turning or 1.0], half)  # 1 if at rest
 
 
 def error_of(

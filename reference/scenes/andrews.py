@@ -108,12 +108,12 @@ class Andrews(PlacedScene):
         end = direction(bar).times(self.bar[0]).shifted(pivot_b - pivot_a)  # P, from A
         delta, psi = upper.angles(end)
         epsilon, chi = lower.angles(end)
-        # In bodies 3, 4 and 7 the y axis points backwards along the bar.
+        # The y axis of bodies 3, 4 and 7 points backwards along the bar.
         return turning, rod, bar.shifted(QUARTER), psi.shifted(QUARTER), delta, chi, epsilon.shifted(QUARTER)
 
     @cached_property
     def _points(self) -> tuple[dict[str, complex], ...]:
-        """For each body, names of joints to their points [m] in the body's frame, from the centre of mass."""
+        """For each body, a mapping from joints to points [m] in the body's frame, from the centre of mass."""
         (rr, ra), (d, da), (ss, sa, sb), (sc, sd) = self.crank, self.rod, self.bar, self.spring_point
         (zt, ta, tb), (e, ea), (u, ua, ub), (zf, fa) = self.upper, self.upper_end, self.lower, self.lower_end
         return (

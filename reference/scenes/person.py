@@ -66,7 +66,7 @@ class OneFoot(EmbeddedScene):
     trunk: float = 0.0
     right_thigh: float = 1.2
     right_shank: float = -0.6
-    duration: Positive = 0.25  # at this time the lifted foot touches the ground
+    duration: Positive = 0.25  # the lifted foot touches the ground
     horizon: Positive = 0.25
 
     @property
@@ -165,7 +165,7 @@ class TwoFeet(OneFoot):
     hip_y: float = 0.8
     knees: Sign = 1
     trunk: float = -0.1
-    duration: Positive = 0.3  # at this time a knee touches the ground
+    duration: Positive = 0.3  # a knee touches the ground
     horizon: Positive = 0.3
 
     def __post_init__(self) -> None:

@@ -236,7 +236,7 @@ class SleighBackwards(ChaplyginSleigh):
     speed: float = -1.0
     turning_rate: float = 1e-3
     duration: Positive = 10.0
-    horizon: Positive = 0.8  # 1 / growth rate, since errors then grow exponentially
+    horizon: Positive = 0.8  # 1 / growth rate
 
 
 @dataclass(frozen=True)

@@ -281,7 +281,7 @@ class SlottedLever(PlacedScene):
         reach = self.distance + crank  # Vector from the lever's pivot to the crank's pin, with a positive real part.
         turning, bending = self.rate * 1j * crank / reach, -(self.rate**2) * crank / reach  # P'/reach and P''/reach.
         angle, rate = np.angle(reach), turning.imag
-        # The imaginary part of log(reach)'' = P''/reach - (P'/reach)^2 is the angle's second derivative.
+        # The angle's second derivative is the imaginary part of log(reach)'' = P''/reach - (P'/reach)^2.
         acceleration = (bending - turning**2).imag
         bar = 0.5 * self.lever * np.exp(-1j * self.slant) * reach / np.abs(reach)
         zero = np.zeros_like(times)

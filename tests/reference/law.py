@@ -62,7 +62,7 @@ class Miss:
 
 
 def differences(law: Law, values: Sequence[Any], others: Sequence[Any]) -> list[float]:
-    """Absolute differences of two lists of values, for angles up to whole turns."""
+    """Absolute differences of two lists of values; whole turns do not count in angles."""
     gaps = [one - other for one, other in zip(values, others, strict=True)]
     for k in law.angles:
         gaps[k] -= 2 * mp.pi * mp.nint(gaps[k] / (2 * mp.pi))

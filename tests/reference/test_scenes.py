@@ -41,7 +41,7 @@ TRIPLE_ROCKER = FreeFourBar(crank=1.0, coupler=0.5, rocker=0.6, ground=(1.2, 0.1
 TURNED = FreeFourBar(
     *(0.5, 0.9, 0.8, (-0.6, 0.7)), branch=-1, rate=-4.0, density=(1.0, 3.0, 0.5), start=1.0, gravity=(3.0, -8.0)
 )
-# These scenes have other signs than the catalogue's, and no zeros, which could hide an error.
+# These scenes have signs that the catalogue lacks, and no zeros, which could hide an error.
 OTHERS: tuple[Scene, ...] = (
     *(TRIPLE_ROCKER, TURNED, DrivenFourBar(rate=-7.0, branch=-1, revolutions=0.5)),
     DrivenFourBar(1.0, 0.9, 1.1, (0.3, -0.4), revolutions=2.0, density=(1.0, 2.0, 3.0)),
@@ -65,7 +65,7 @@ OTHERS: tuple[Scene, ...] = (
     TwoFeet(knees=-1, stance=0.3, hip_x=0.1, trunk=0.2, mass=60.0, height=1.6, hip_y=0.72),
 )
 ALL = (*SCENES, *SCENES_OF_LIMITS, *OTHERS)
-# Scene's name to freedoms of configuration and of velocity. A chain has one freedom for each link.
+# A mapping from scenes' names to freedoms of configuration and of velocity. A chain has one freedom for each link.
 FREEDOMS: dict[str, tuple[int, int]] = {
     **dict.fromkeys(("driven_four_bar", "parallelogram", "overdriven_four_bar", "driven_slider_crank"), (0, 0)),
     **dict.fromkeys(("sleigh", "sleigh_backwards", "skate_on_slope"), (3, 2)),

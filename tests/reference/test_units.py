@@ -17,7 +17,7 @@ from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from tests.mechanisms import SCENES_OF_LIMITS
 
-# Field names to the exponents of length, time and mass in the field's unit, for fields with a unit.
+# A mapping from fields with a unit to the exponents of length, time and mass in the unit.
 LENGTH, TIME, MASS = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 RATE, SPEED, PULL, INERTIA = (0, -1, 0), (1, -1, 0), (1, -2, 0), (2, 0, 1)
 _METRES = (

@@ -76,7 +76,7 @@ def test_every_dependency_has_a_lower_bound():
         lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')
 
 
-# File names to an import that a contract forbids there.
+# A mapping from files to an import that a contract forbids in the file.
 FORBIDDEN = {
     "engines/extrapolated.py": "from reference.scenes.catalogue import SCENES",
     "reference/rolling/roll.py": "import reference.scenes.rolling.body",  # indirectly

@@ -72,7 +72,7 @@ for member in ("order", "step_cost", "enforcement", "regularisation", "inner_ste
 
 
 HALF_STEP_LATE = "velocities are half a step late"
-# Name of the mistake to the first check that finds the mistake and the function that builds the wrong run.
+# A mapping from mistakes to the first check that finds the mistake and the function that builds the wrong run.
 MISTAKES: dict[str, tuple[str, Build]] = {
     "a kind of joint is looked up": (
         "builds_or_refuses",
@@ -179,7 +179,7 @@ SMALL_MISTAKES: dict[str, tuple[str, Build]] = {
     "reactions are 1.1 times as large": ("", times("reaction", 1.1)),
     "reactions are no numbers": ("", times("reaction", np.nan)),
 }
-# Name of the mistake to the check that finds the mistake, the engine's member and the wrong function.
+# A mapping from mistakes to the check that finds the mistake, the engine's member and the wrong function.
 ANSWERS: dict[str, tuple[str, str, Callable[..., Any]]] = {
     "the order is a number": ("promises_an_order", "order", lambda mechanism: 2),
     "an order is refused in a word": ("promises_an_order", "order", lambda mechanism: NotDeclared("no")),
@@ -261,7 +261,7 @@ class Imported(Wrong):
     packages: tuple[str, ...] = ("_pymunk_cffi_backend",)  # pyright: ignore[reportIncompatibleMethodOverride]
 
 
-# Name of the mistake to the check that finds the mistake and the wrong engine.
+# A mapping from mistakes to the check that finds the mistake and the wrong engine.
 WRONG: dict[str, tuple[str, Any]] = {
     **{name: (check, Wrong(name)) for name, (check, *_) in {**MISTAKES, **ANSWERS}.items()},
     "the family has two lines": ("has_a_name", TwoLines("nothing")),

@@ -33,8 +33,8 @@ Array = NDArray[np.float64]
 # is the arithmetic-geometric mean (R. Bulirsch, "Numerical calculation of elliptic integrals and elliptic functions",
 # Numerische Mathematik 7 (1965) 78-90).
 
-# Relative difference of two numbers at which the iteration of their mean ends. The convergence is quadratic, so that
-# the relative error is then the square of this number.
+# Relative difference of two iterates at which the arithmetic-geometric mean is accurate. The convergence is quadratic,
+# so that the relative error is then the square of this number.
 HALF_PRECISION = 1e-9
 
 

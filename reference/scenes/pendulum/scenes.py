@@ -23,9 +23,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LinkPendulum(Scene):
-    """`links` uniform bars, each of `length` [m] and `mass` [kg]; the last is `tip` times heavier.
+    """A chain of `links` uniform bars of `length` [m] and `mass` [kg]; the last bar is `tip` times heavier.
 
-    All start at the same `angle` [rad] from the downward vertical and `rate` [rad/s]. A small difference grows less
+    All bars start at one `angle` [rad] from the downward vertical and one `rate` [rad/s]. A small difference grows less
     than tenfold up to the horizon, which `Chain.horizon` measures.
     """
 

@@ -143,7 +143,7 @@ class RollingBody(Valid):
 
     @validated
     def slip(self, friction: Positive, until: Positive) -> float | None:
-        """The first instant [s] before `until` at which |T| exceeds friction * N, a hop included, or None."""
+        """The first instant [s] before `until` of a slip, with |T| above friction * N, or of a hop, or None."""
         return self._first(((-1.0, friction), (1.0, friction)), until)
 
     def _first(self, parts: Sequence[tuple[float, float]], until: float) -> float | None:

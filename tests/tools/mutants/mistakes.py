@@ -80,7 +80,7 @@ def read_mistakes(path: Path = LIST) -> tuple[Mutation, ...]:
 
 @cache
 def _functions() -> dict[str, set[str]]:
-    """Files to the qualified names of their functions and classes, with "" for the module."""
+    """A mapping from files to the qualified names of all functions and classes, with "" for the module."""
     paths = sorted(path for package in MUTATED_PACKAGES for path in (ROOT / package).rglob("*.py"))
     trees = {path.relative_to(ROOT).as_posix(): ast.parse(path.read_bytes()) for path in paths}
     return {file: {"", *(name for name, _ in _walk(tree, ""))} for file, tree in trees.items()}
