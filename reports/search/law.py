@@ -1,8 +1,8 @@
 """Relative differences of motions and forces, and the tolerance for rounding and for an iterative solver.
 
 A check fails if its error exceeds both a floor and NOISE_MARGIN times the noise of the case. The noise is the largest
-change of the result if the case is slightly shifted, turned and rounded differently, or if the solver has a smaller
-tolerance (`Engine.stricter`). Nearly dependent rows, large mass ratios and combined runs increase the noise.
+change of the result if the case is slightly shifted, turned and rounded, or if the solver's tolerance is smaller
+(`Engine.stricter`). Nearly dependent rows, large mass ratios and combined runs increase the noise.
 """
 
 from __future__ import annotations
@@ -134,8 +134,8 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkippe
 
 
 def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDeclared:
-    """Instants of the first steps. Only the start is used if a body or a constraint direction turns by more than a
-    radian in a step, or if there is a roll.
+    """Instants of the first steps. Only the start is used with a roll, or if a body or the direction of a constraint
+    turns by more than a radian in a step.
 
     The equations of a roll assume a closed gap, but the gap is open after a step.
     """

@@ -2,8 +2,8 @@
 
 The step is halved, at most to 1/FINEST_DIVISION, until poses and reactions converge with the engine's declared order.
 Divergence at a long step is accepted if the motion converges at shorter steps. An error that does not converge is a
-fault unless it is noise (`reports.search.law`), the declared compliance explains it, or a textbook method of the same
-order does not converge either.
+fault, unless it is noise (`reports.search.law`) or comes from the declared compliance. It is no fault either if a
+textbook method of the same order does not converge.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ Floors = dict[str, float]
 MOTION_SPAN = 0.4
 MOTION_SAMPLES, COARSE_STEPS = 4, 10  # COARSE_STEPS is the number of steps between two samples.
 # Largest ratio of an error to the error that the declared order predicts from the run with twice the step. The margin
-# covers the next power of the step and the sampling of the error (as in `engines.conformance.moving`).
+# covers terms of higher order, and errors that are known at few samples (as in `engines.conformance.moving`).
 ORDER_MARGIN = 2.5
 # Smallest tolerances, relative to the motion. These tolerances cover rounding in combined runs and in drives of large
 # inertias.

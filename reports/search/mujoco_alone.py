@@ -64,8 +64,8 @@ class Equality:
 
     `first`, `second`: numbers of the bodies. With "connect" and "weld", `second` may be the world, 0. Other kinds
     couple the last coordinates of both bodies. `at`: anchor of a "connect" in the first body's frame, in tenths of a
-    metre. `curve`: twice the linear and twice the quadratic coefficient of the polynomial that gives the first
-    coordinate or tendon from the second. A tendon is the sum of a coordinate and the previous coordinate.
+    metre. `curve`: integers (a, b) of the condition first = a/2 second + b/2 second^2 for both coordinates or tendons.
+    A tendon is the sum of a coordinate and the previous coordinate.
     """
 
     kind: str

@@ -48,8 +48,8 @@ class RecipeBody:
 class Rim:
     """A rolling curve of a recipe, described by integers.
 
-    `size`: step of `ladder`, relative to the size of the second body. An ellipse has two more numbers. `ratio`: ratio
-    of the axes as a step of `ladder`. `place`: parameter of the contact point in steps of 0.3 rad.
+    `size`: step of `ladder`, relative to the size of the second body. Only an ellipse has `ratio` and `place`. `ratio`:
+    ratio of the axes as a step of `ladder`. `place`: parameter of the contact point in steps of 0.3 rad.
     """
 
     shape: str = "circle"

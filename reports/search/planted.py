@@ -215,8 +215,8 @@ class PlantedControl(Task):
 
 
 def search_with_fault(engines: tuple[Engine, ...], change: PlantedFault, cases: int) -> Iterator[tuple[int, bool, str]]:
-    """Yield (number of the case, whether it was judged, check) up to the first check that fails only with the fault;
-    until then the check is ""."""
+    """Yield (number of the case, whether it was judged, failing check or ""). The generator ends with the first check
+    that fails only with the fault."""
     # To save time, an engine that compiles each shape is checked at instants only.
     of_motion = ("instant",) if any(engine.build_time for engine in engines) else ("instant", "motions")
     oracles = ("relations",) if change.is_relation else of_motion

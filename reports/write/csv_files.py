@@ -57,7 +57,7 @@ def cell_text(row: Measurement, name: str) -> str:
 
 
 def no_formula(text: str) -> str:
-    """The text, after an apostrophe if a spreadsheet would interpret the text as a formula."""
+    """The text. An apostrophe is added in front if a spreadsheet would interpret the text as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 

@@ -160,10 +160,10 @@ def advice_lines(
 
 
 # A program without this suite is a file `results/programs/<scene>_<method>.py`, where "_" replaces other characters
-# than letters and digits. Such a program has the lines `duration = ...` (within the scene's horizon) and `steps = ...`,
-# and prints the position and angle `end` of a body. Programs are written by hand, because `crosscheck export` can't
-# write methods with code in each step. A report changes only the line `steps = ...`. For a method without a program,
-# the page has code that calls this suite.
+# than letters and digits. The program has the lines `duration = ...` (within the scene's horizon) and `steps = ...`,
+# and prints the pose `end` of a body. Programs are written by hand, because `crosscheck export` can't write methods
+# with code in each step. A report changes only the line `steps = ...`. For a method without a program, the page has
+# code that calls this suite.
 PROGRAM_FOLDER = "programs"
 RESULTS = Path(__file__).parents[1] / "results"
 DURATION_LINE = re.compile(r"^duration = ([\d.]+)", re.MULTILINE)

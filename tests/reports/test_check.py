@@ -260,7 +260,7 @@ def test_the_report_is_rendered_as_text_html_and_markdown(shipped):
     assert "](errors.svg)" in rendering.markdown("four bar", reported, files)
     foreign = rendering.Section("", ("<i>",), (("why", "<i>"),), ("<i>",), header=("<i>",), rows=(("<i>",),))
     assert "<i>" not in rendering.html("<i>", [foreign])
-    assert rendering.markdown("four bar", [foreign], {}).count("<i>") == 1  # the code block contains it
+    assert rendering.markdown("four bar", [foreign], {}).count("<i>") == 1  # the code block contains "<i>"
     numbers = json.loads(json.dumps(check_data(shipped), allow_nan=False))
     assert set(numbers) == set(schema()["$defs"]["MODEL"]["required"])
     for name, setting in (("advised", shipped.advised), ("next_decade", shipped.decade)):

@@ -128,7 +128,7 @@ def test_the_shapes_of_the_page_are_the_centrodes_of_the_reference(page):
 def test_a_drawn_circle_is_the_first_harmonic(page):
     expected = {"cosines": [[2, 0], [1, 0], [0, 0], [0, 0]], "sines": [[0, 0], [0, 1], [0, 0], [0, 0]]}
     for name, values in expected.items():
-        # The drawn polygon with 200 corners is within 1e-4 of the circle.
+        # The drawn polygon has 200 corners and differs from the circle by 1e-4.
         assert np.array(page["circle"][name]) == pytest.approx(np.array(values), abs=2e-4)
 
 

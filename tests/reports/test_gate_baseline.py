@@ -142,7 +142,7 @@ def test_in_many_scenes_a_method_may_not_be_nearly_three_times_as_wrong_in_the_m
     assert failed(*[3 ** (1.2 / 3)] * 9) == []
     assert failed(*[3 ** (1.3 / 3)] * 9) == ["angle"]
     assert failed(*[0.3] * 4, *[1.0], *[2.9] * 4) == []
-    # The cells of one scene count as one.
+    # All cells of one scene count as a single cell.
     assert [check for check in growth(of_scenes(2.9) * 9) if not check.passed] == []
     below = [(replace(now, angle=3e-13), replace(earlier, errors={"angle": 1e-13})) for now, earlier in of_scenes(1, 1)]
     assert [check.passed for check in growth(below)] == [True]

@@ -49,7 +49,8 @@ class Pair(Scene):
         return Mechanism((first, second), joints, (0.0, -10.0))
 
     def _motion(self, times: NDArray[np.float64]) -> Trajectory:
-        """The second disc has the velocity 6 t along x. No force causes it, but no error depends on this."""
+        """The second disc has the velocity 6 t along x. This velocity is physically impossible, but no error depends on
+        that."""
         t = times
         pose, twist = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))
         pose[:, 0, 2], twist[:, 0, 2] = 5 * t, 5.0

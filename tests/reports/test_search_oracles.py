@@ -131,7 +131,7 @@ def _changed_row(change: Callable[[RowWriter, Any, Any, Any], None]) -> Callable
 
 
 def _flipped_sign(self: RowWriter, v: Any, jacobian: Any, reference: Any) -> None:
-    jacobian[-self.size * len(v) :: len(v)] *= -1.0  # the column of the first coordinate
+    jacobian[-self.size * len(v) :: len(v)] *= -1.0  # this slice is the column of the first coordinate
 
 
 def _flipped_velocity_term(self: RowWriter, v: Any, jacobian: Any, reference: Any) -> None:
