@@ -10,7 +10,7 @@ import sys
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run a command and raise SystemExit with its exit status. By default the arguments of the process are used."""
+    """Run a command and raise SystemExit with its exit status. The default is the command line of the process."""
     program = arguments is None
     status = 130
     try:
@@ -66,6 +66,6 @@ def _ended(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    if not sys.flags.safe_path:  # The current folder, which `python -m` puts first, is replaced.
+    if not sys.flags.safe_path:  # `python -m` puts the current folder first.
         sys.path[0] = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     main()

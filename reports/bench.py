@@ -74,7 +74,7 @@ class WorldsCost:
 
 @dataclass(frozen=True)
 class LoopCost:
-    """CPU seconds per step of `run` and of a bare loop. Both are minima of TURNS runs."""
+    """CPU seconds per step of `run` and of a bare loop, as minima of TURNS runs."""
 
     engine: Engine
     steps: int

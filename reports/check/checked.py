@@ -75,7 +75,7 @@ class ErrorParts:
     step: float  # Distance of the user's run from the motion with the declared soft joints.
     rest: float  # Distance of the run at the smallest step from the motion with the declared soft joints.
     smallest: float  # The smallest step of the sweep [s].
-    falling: bool  # Whether the error still decreases at the smallest step. Then `rest` is an upper bound.
+    falling: bool  # Whether the error still decreases at the smallest step, so that `rest` is an upper bound.
     divided: bool = True  # Whether the engine declares a law of its joints, so that softness and step are separated.
 
 

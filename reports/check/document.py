@@ -1,4 +1,4 @@
-"""The JSON document of `crosscheck check --json` and its JSON Schema. Both are generated from the table OBJECTS."""
+"""The JSON document of `crosscheck check --json` and its JSON Schema, both generated from the table OBJECTS."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
 
 
 def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
-    """The welds of a locked mechanism. Empty if hinges instead of the welds would leave no freedom either."""
+    """The welds of a mechanism that is locked but would have a freedom with hinges instead of the welds."""
     hinges = tuple(
         Pin(joint.name, joint.first, joint.second, joint.first_point, joint.second_point)
         if isinstance(joint, Weld)
@@ -89,7 +89,7 @@ def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: in
 def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tuple[tuple[float, str], ...]:
     """(time [s], body) when a body on the ground reverses its direction while another body moves.
 
-    Empty for mechanisms with more than one freedom or without loops.
+    The result is empty for mechanisms with more than one freedom or without loops.
     """
     loops = mechanism.row_count > 2 * len(mechanism.bodies)
     if freedoms > 1 or not loops:

@@ -1,8 +1,8 @@
-"""The ideal motion in a new installation: in numpy while that takes less time than compiling the judge's code.
+"""The ideal motion in a new installation. It is computed in numpy if this is faster than compiling the judge's code.
 
 The judge's machine code takes COMPILE_SECONDS of CPU time. A short motion of a few bodies takes a few seconds in numpy.
-So the first motions are computed in numpy. The code is compiled as soon as the time that numpy has taken in all
-processes, with the time that it would take now, exceeds the time of compilation.
+So numpy computes the first motions. The code is compiled as soon as the times of all motions in numpy, including
+the next motion, exceed the time of compilation.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from reference.mechanism import Mechanism
 from reports.check.judging import LOOSER_JUDGE, IdealMotion, reference_motion
 
 COMPILE_SECONDS = 12.0  # CPU time of compilation, measured on one processor [s].
-PROBE_SHARE = 0.1  # Of the motion: its time in numpy is measured.
-# CPU time of the reference motion divided by that of a run with the looser tolerance. The motion is a run of the judge,
-# its second run at twice as many samples, two runs of disturbed mechanisms, and one looser run. Measured: 5 to 8.
+PROBE_SHARE = 0.1  # The time in numpy is measured for this share of the motion.
+# CPU time of the reference motion divided by the time of a run with the looser tolerance. The reference motion consists
+# of five runs. Measured ratios are 5 to 8.
 MOTION_PER_RUN = 8.0
 COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
 
@@ -35,10 +35,10 @@ def ideal_motion(
     tolerance: float = np.inf,
     on_progress: Callable[[str], None] = lambda stage: None,
 ) -> IdealMotion:
-    """`reference_motion` in numpy if that is faster than compiling, and otherwise in machine code.
+    """The result of `reference_motion`, in numpy if this is faster than compilation, else in machine code.
 
-    A motion from numpy is accepted only if the judge resolves all of it without a warning. So both have the accuracy
-    that the judge claims.
+    A motion from numpy is accepted only if the judge resolves the whole motion without a warning. So every motion has
+    the accuracy that the judge claims.
     """
     on_progress("following the ideal motion")
     if is_cold(adaptive=True):
@@ -52,7 +52,7 @@ def ideal_motion(
 
 
 def _motion_in_numpy(mechanism: Mechanism, samples: int, spacing: float, tolerance: float) -> IdealMotion | None:
-    """The motion in numpy; None if it would take longer than compiling, or if numpy does not resolve it."""
+    """The motion in numpy, or None if numpy would take longer than compilation or does not resolve the motion."""
     spent = numpy_seconds()
     if spent > COMPILE_SECONDS:
         return None

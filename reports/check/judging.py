@@ -50,7 +50,7 @@ def soft_motion(
     tolerance: float = SOFT_TOLERANCE,
     twist: Array | None = None,
 ) -> Array:
-    """Poses (times, bodies, 3) of a motion with soft joints. They are NaN after the integration has failed.
+    """Poses (times, bodies, 3) of a motion with soft joints. Poses are NaN after the integration has failed.
 
     `give` returns the regularisation of the rows from the gap and the pose. twist: initial velocities (bodies, 3), by
     default those of the mechanism. The method is LSODA, since the equations are stiff.
@@ -112,7 +112,7 @@ class IdealMotion:
 def reference_motion(
     mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf, judge: Judge = TRUTH
 ) -> IdealMotion:
-    """The motion with ideal joints. It ends when the estimated error exceeds the share JUDGE_SHARE of the tolerance.
+    """The motion with ideal joints, until the estimated error exceeds the share JUDGE_SHARE of the tolerance.
 
     Raises InvalidMechanism if the integration fails, or if the first sample after the start is inaccurate.
     """
@@ -194,7 +194,7 @@ def _growth(
     seed: int,
     nudge: float,
 ) -> Array:
-    """Growth factor (times,) of a random initial disturbance. It is 1 if the reference's error can explain it."""
+    """Growth factor (times,) of a random initial disturbance, or 1 if the reference's error can explain the growth."""
     dynamics, random = Dynamics(mechanism), np.random.default_rng(seed)
     unit = mechanism.pose_unit
     none = np.ones(len(motion.t))
@@ -217,7 +217,7 @@ def _growth(
     apart_by = np.nan_to_num(size(disturbed), nan=np.inf)
     if not apart_by[0] > REMAINING_SHARE * nudge:
         return none
-    # Near a singular position the error of the reference motion grows too. This growth does not count.
+    # Near a singular position the error of the reference motion grows too, which does not count.
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
@@ -274,11 +274,11 @@ def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jum
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
-    """The largest relative error (times,) of the unique joint reactions. It is NaN if the run has no reactions.
+    """The largest relative error (times,) of the unique joint reactions, or NaN if the run has no reactions.
 
-    Force errors are relative to the largest ideal force, and moment errors to the largest ideal moment. If these are
-    only rounding, errors are relative to the largest acting force, which is multiplied by the length for moments. The
-    force of a joint is compared as a vector, so the error does not depend on the axes.
+    Force errors are relative to the largest ideal force, and moment errors to the largest ideal moment. If all ideal
+    forces or moments are only rounding, errors are relative to the largest acting force, or for moments to this force
+    times the length. The force of a joint is compared as a vector, so the error does not depend on the axes.
     """
     out = np.full(len(run.t), np.nan)
     if not mechanism.row_count:

@@ -38,7 +38,7 @@ def has_one_freedom(mechanism: Mechanism) -> bool:
 
 
 def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Trajectory:
-    """The motion of a mechanism with one freedom at times t (times,) [s]. It is NaN after the integration has failed.
+    """The motion of a mechanism with one freedom at times t (times,) [s], or NaN after the integration has failed.
 
     tolerance: relative error of a step.
     """
@@ -55,7 +55,7 @@ def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Traj
 
 
 class _Tangent:
-    """The direction tau (3 bodies,) at a pose (3 bodies,). Its sign does not change between evaluations."""
+    """The direction tau (3 bodies,) at a pose (3 bodies,), with the same sign in successive evaluations."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism, self.root = mechanism, np.sqrt(mechanism.inertias.reshape(-1))
@@ -80,7 +80,7 @@ class _Tangent:
 
 
 def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
-    """The states q, v (times, 3 bodies + 1). They are NaN after the integration has failed."""
+    """The states q, v (times, 3 bodies + 1), or NaN after the integration has failed."""
     tangent, count = _Tangent(mechanism), mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     start = float(tangent.last @ (mechanism.inertias.reshape(-1) * mechanism.twist.reshape(-1)))

@@ -1,4 +1,4 @@
-"""The two pictures of a check. They show the errors over time, and the mechanism at the time of the largest error."""
+"""The two pictures of a check: the errors over time, and the mechanism at the time of the largest error."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class PictureData:
     judge_t: list[float]
     judge: Curves  # Errors of the judge at `judge_t`.
     advised_t: list[float]
-    advised: Curves | None  # Errors of the advised settings at `advised_t`. None if there are no such settings.
+    advised: Curves | None  # Errors of the advised settings at `advised_t`, or None without advised settings.
     horizon: float | None  # Time [s] after which errors grow exponentially, or None if they do not.
     moment: float  # Time of the largest error of the user's settings [s].
     ground: list[list[float]]  # Ground points (points, 2) [m].

@@ -1,4 +1,4 @@
-"""The request and the report of a check. Both can be pickled, since a check runs in a supervised process.
+"""The request and the report of a check, which can be pickled since a check runs in a supervised process.
 
 The supervised process runs the user's script, so the command continues if the script raises, exits or never ends.
 """

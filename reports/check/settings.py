@@ -104,7 +104,7 @@ def run_settings_sweep(
 
 
 def _cost_limit(table: list[SettingRun], tolerance: float) -> float:
-    """CPU time [s] of the cheapest setting with a tenth of the advised setting's error. Infinite if there is none."""
+    """CPU time [s] of the cheapest setting with a tenth of the advised setting's error, or infinity."""
     advised = cheapest(table, tolerance)
     decade = None if advised is None else cheapest(table, advised.error / 10)
     return float("inf") if decade is None else decade.cost

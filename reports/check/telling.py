@@ -259,7 +259,7 @@ def _opening(result: CheckResult) -> str:
 
 
 def _table(result: CheckResult) -> Section:
-    """The table of all settings that were tried. Among settings with equal errors only one is shown."""
+    """The table of all settings that were tried, with only one of several settings with equal errors."""
     groups: dict[tuple[str, str], list[SettingRun]] = {}
     for setting in result.table:
         groups.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)

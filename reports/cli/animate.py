@@ -70,7 +70,7 @@ def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engin
 
 
 def _refuse_bad(path: Path, kind: str, force: bool) -> None:
-    """Raise BadInput or FileTrouble if the picture can't be made or written. It is called before engines run."""
+    """Raise BadInput or FileTrouble before engines run if the picture can't be made or written."""
     refuse_existing([path], "--output", force)
     if kind == "mp4":
         ffmpeg()

@@ -128,7 +128,7 @@ def _refuse_missed(answers: Answers, is_folder: bool) -> None:
 
 
 def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everything: bool, force: bool) -> None:
-    """Raise BadInput or FileTrouble for invalid options. It is called before a model runs."""
+    """Raise BadInput or FileTrouble for invalid options before a model runs."""
     model = request.word
     if not model:
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")

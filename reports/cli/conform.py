@@ -119,7 +119,7 @@ class Question:
 
 @cache
 def _cases(named: Named, index: int) -> tuple[ConformanceCase, ...]:
-    """The cases of an engine. They are cached, so that the checks of an engine share runs."""
+    """The cached cases of an engine, so that the checks of an engine share runs."""
     return tuple(cases(named.engines()[index]))
 
 

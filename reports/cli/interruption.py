@@ -1,4 +1,4 @@
-"""Handlers for Ctrl-C, SIGTERM and SIGHUP. They end the program without a traceback and remove temporary folders.
+"""Handlers for Ctrl-C, SIGTERM and SIGHUP that end the program without a traceback and remove temporary folders.
 
 The exit status is 128 plus the number of the signal, for example 130 after Ctrl-C.
 """
@@ -52,7 +52,7 @@ def _end(number: int, frame: FrameType | None) -> None:
 
 
 def ending_at_once() -> Any:
-    """A context in which a signal ends the process immediately. It is for work that changes no files."""
+    """A context for work that changes no files. A signal ends the process immediately."""
     return _handled(_end)
 
 

@@ -1,4 +1,4 @@
-"""Scenes, engines and pages that a command can use. They are registered, or given by references or by the store."""
+"""Scenes, engines and pages that a command can use: registered ones, and those from references or from the store."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SLEEPING = 120.0  # Wall time [s] after which code of a third party is ended eve
 
 @dataclass(frozen=True)
 class Reference:
-    """A reference to a scene or engine that is not registered. It can be stored as text."""
+    """A reference to a scene or engine that is not registered. References can be stored as text."""
 
     kind: str  # "scene" or "engine".
     word: str  # A reference (`engines.loading`), or the name of a registered scene.
@@ -227,7 +227,7 @@ class ReferenceTrial:
     motion: bool  # Whether the motion of a scene is computed too.
 
     def __call__(self, reference: Reference) -> str:
-        """The reason why the reference can't be used. Empty if it can be used."""
+        """The reason why the reference can't be used, or an empty text."""
         try:
             for value in reference.values():
                 # A command needs a hashable and printable value that is equal to itself.

@@ -119,7 +119,7 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
         left = len(missing(whole, store))
         material = {page: material_of(page, store) for page in pages}
     names = {page.name for page in catalogue.PAGES}
-    # Pages without stored results are left out. They were not run, or the sources have changed since.
+    # Pages without stored results were not run, or the sources have changed since. Such pages are left out.
     material = {
         page: stored
         for page, stored in material.items()
@@ -213,7 +213,7 @@ def drawn(material: Materials, references: Iterable[str], command: str, order: P
 
 
 def moving_picture(material: Iterable[Material]) -> dict[str, str]:
-    """Name -> text of the animation in README. Empty unless all motions in it are stored."""
+    """Name -> text of the animation in README. The result is empty unless all motions are stored."""
     answers = {task: answer for stored in material for task, answer in stored.answers.items() if task in MOVING_TASKS}
     if any(task not in answers for task in MOVING_TASKS):
         return {}

@@ -89,7 +89,7 @@ def run(
 class Selection:
     """The options of `crosscheck run` that choose cells. The properties raise BadInput."""
 
-    scenes: tuple[str, ...] = ()  # Names of scenes or pages, or references. Empty means all scenes.
+    scenes: tuple[str, ...] = ()  # Names of scenes or pages, or references. An empty tuple means all scenes.
     engine: str | None = None
     variant: str | None = None
     settings: tuple[str, ...] = ()  # "NAME=VALUE" for parameters of the scenes.

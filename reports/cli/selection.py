@@ -21,7 +21,7 @@ QUICK_CELL = 0.1  # Longest estimated time [s] of the shortest cell, of a task, 
 
 
 def choose_scenes(words: Sequence[str], scenes: Sequence[Scene], pages: Sequence[Page]) -> tuple[Scene, ...]:
-    """The scenes with these names, or on pages with these names. Without names all scenes. Raises BadInput."""
+    """The scenes with these names, or on pages with these names. No names select all scenes. Raises BadInput."""
     if not words:
         return tuple(scenes)
     taught = {scene: [page.name for page in pages if page.teaches(scene)] for scene in scenes}
@@ -104,7 +104,7 @@ def choose_cells(
 ) -> tuple[Cell, ...]:
     """The cells of the grid of these scenes, and of the experiments on their pages. Raises BadInput for invalid steps.
 
-    full: all steps are run, also the steps that users choose. Otherwise `_quick` leaves out long cells. every, steps:
+    full: whether all steps are run, also the steps that users choose. A quick run leaves out long cells. every, steps:
     these steps replace the grid. named: a quick run includes the shortest cell of each method even if it is long.
     alone: a quick run leaves out experiments in other scenes.
     """

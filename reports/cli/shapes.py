@@ -17,7 +17,7 @@ from reports.pages.centrodes.page import returned
 from reports.run.files import write_whole
 
 WRITERS = {"csv": as_csv, "svg": as_svg, "dxf": as_dxf}
-DEFAULT_KINDS = ("csv", "svg")  # Without dxf, which needs the extra `dxf`.
+DEFAULT_KINDS = ("csv", "svg")  # The kind dxf is left out, since it needs the extra `dxf`.
 MOST_POINTS = 1_000_000  # No workshop can cut more points, and memory can hold them.
 MOST_BYTES = 2**27  # Largest size of the table of poses, about a hundred bytes for each of a million poses.
 COARSE = 1e-3  # If the relative error of the shapes is larger, a sentence says that the table has too few poses.
@@ -35,7 +35,7 @@ def shapes(
 ) -> None:
     """Write the two shapes that generate a motion when the one rolls on the other.
 
-    The shapes are the centrodes of the motion. These are the curves of the instant centre in space and in the body.
+    The shapes are the centrodes of the motion, which are the curves of the instant centre in space and in the body.
     """
     kinds = dict.fromkeys(kind or DEFAULT_KINDS)
     if unknown := [word for word in kinds if word not in WRITERS]:

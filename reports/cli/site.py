@@ -45,7 +45,7 @@ def site(
         raise BadInput(f"{folder} has no index.md: write the pages first with {command}, or name --pages")
     require_packages()
     refuse_strangers(output)
-    folder_for(output.absolute().parent, REMEDY)  # This check comes before any run.
+    folder_for(output.absolute().parent, REMEDY)  # before any run
     if serve:
         server(Path(), port).server_close()
     terminal = Terminal(140)

@@ -13,7 +13,7 @@ from reports.model.ending import FileTrouble, visible
 
 @contextmanager
 def written() -> Iterator[None]:
-    """A context for output. It raises BrokenPipeError if the reader has ended, and FileTrouble for other errors."""
+    """A context for output that raises BrokenPipeError if the reader has ended, and FileTrouble for other errors."""
     try:
         yield
         sys.stdout.flush()

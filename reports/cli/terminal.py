@@ -30,7 +30,7 @@ PULSE = 10.0  # Time [s] between two lines of progress in a file or a pipe.
 
 
 class Terminal(Console):
-    """The output of a command. It has the width of the terminal, or `width` columns in a file or a pipe.
+    """The output of a command, with the width of the terminal, or with `width` columns in a file or a pipe.
 
     `form` is "text", "markdown" or "json". Markdown and JSON go to standard output, and other output, such as progress,
     then goes to standard error. The JSON document is printed at the end (`telling`). `print` raises the errors of
@@ -88,9 +88,9 @@ def opened(path: Path) -> Iterator[Store]:
 def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
     """A terminal with the form that the options select. Raises BadInput for both options at once.
 
-    The JSON document is printed at the end, but not after invalid input. It has `tables`, `sentences`, the exit
-    `status`, and `message`. A table has a `title` and `rows`. A row is an object with column names as keys, in which an
-    unknown number is null.
+    The JSON document is printed at the end, but not after invalid input. The document has `tables`, `sentences`, the
+    exit `status`, and `message`. A table has a `title` and `rows`. A row is an object with column names as keys, in
+    which an unknown number is null.
     """
     if as_json and as_markdown:
         raise BadInput("--json and --markdown are two forms of one output; give one of them")

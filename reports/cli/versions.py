@@ -133,13 +133,13 @@ def _versions_by_engine(
 
 
 def named_scenes(words: list[str] | tuple[str, ...]) -> tuple[Scene, ...]:
-    """The scenes with these names, which commas may separate. Without names all scenes. Raises BadInput."""
+    """The scenes with these names, which commas may separate. No names select all scenes. Raises BadInput."""
     names = [name.strip() for argument in words for name in argument.split(",") if name.strip()]
     return choose(names).scenes
 
 
 def announce_pip(word: str) -> None:
-    """Print a line on stderr before pip runs. It does not have the prefix of an error message."""
+    """Print a line on stderr before pip runs, without the prefix of an error message."""
     print(f"{word}: installed by pip, unless it is there already", file=sys.stderr, flush=True)
 
 

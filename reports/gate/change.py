@@ -1,4 +1,4 @@
-"""The regression gate. It compares each row with a baseline, which is the errors.csv of an earlier run.
+"""The regression gate compares each row with a baseline. The baseline is the errors.csv of an earlier run.
 
 The effect of rounding is measured in runs whose masses, inertias, gravity and points are changed by one rounding. A
 change of the initial state alone does not suffice, since a prescribed or projected motion does not depend on its last
@@ -32,7 +32,7 @@ from reports.write.provenance import still_installed
 # (scene, method, samples, steps per sample) identifies a cell in all runs, even if its settings have changed.
 Identity = tuple[str, str, int, int]
 IDENTITY = ("scene", "engine", "variant", "samples", "every")  # Columns of errors.csv that define a cell.
-TIMINGS_FILE = "timings.csv"  # This file is beside errors.csv. Its comments contain the versions.
+TIMINGS_FILE = "timings.csv"  # A file beside errors.csv whose comments contain the versions.
 MOST_FILES_NAMED = 5  # Largest number of files that a message names.
 
 
@@ -64,7 +64,7 @@ class Baseline:
 
     @property
     def same_versions(self) -> bool:
-        """Whether the installed packages have the versions of the baseline. True if these versions are unknown.
+        """Whether the installed packages have the versions of the baseline, or these versions are unknown.
 
         Rows with the same versions are checked by `change`, and other rows by `drift`.
         """
@@ -146,7 +146,7 @@ Part = TypeVar("Part")
 class Altered(EngineWrapper):
     """An engine that builds `change(mechanism)` with the wrapped engine.
 
-    It has the name of the wrapped engine, and that engine's declarations for the unchanged mechanism. `change` is a
+    The name and the declarations, for the unchanged mechanism, are those of the wrapped engine. `change` is a
     callable frozen dataclass, so it can be compared, printed and sent to other processes.
     """
 

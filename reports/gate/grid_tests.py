@@ -71,5 +71,5 @@ def test_the_grid_has_every_scene_and_method_of_the_baseline(request: pytest.Fix
 
 
 def absence(method: str) -> str:
-    """A sentence on how to install the extra of a method. Empty if the method is installed or needs no extra."""
+    """A sentence on how to install the extra of a method, or an empty text if the method needs no installation."""
     return next((sentence for name, sentence in registry.ABSENT.items() if method.startswith(f"{name} ")), "")

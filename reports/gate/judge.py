@@ -1,7 +1,7 @@
 """The judge of the gate: a mechanism with ideal or regularised joints, integrated by textbook methods.
 
-The judge uses the compiled rows and steps of `engines.lagrange`. Without numba it uses numpy and is a hundred times
-slower. `tests/engines/test_judge.py` compares it with the exact motions of scenes and with the sag of a spring.
+The judge uses the compiled rows and steps of `engines.lagrange`. Without numba the judge uses numpy and is a hundred
+times slower. `tests/engines/test_judge.py` compares it with the exact motions of scenes and with the sag of a spring.
 `tests/engines/test_judge_witness.py` compares it with an independent implementation in random mechanisms.
 """
 
@@ -98,9 +98,10 @@ def _compiled(
     soft: Regularisation | None,
     project: bool,
 ) -> Trajectory | None:
-    """The motion by compiled steps. None without numba, for dependent ideal rows, and if the motion diverges.
+    """The motion by compiled steps. The result is None without numba, for dependent ideal rows, and after divergence.
 
-    Regularised rows may be dependent, since their compliances make the system regular. They are not projected here.
+    Regularised rows may be dependent, since their compliances make the system regular. Compiled steps do not project
+    them.
     """
     machine = _machine(mechanism, soft)
     if machine is None or (project if soft is not None else machine.has_dependent_rows):
@@ -172,7 +173,7 @@ def in_numpy(
 ) -> Trajectory:
     """The motion of a mechanism at samples `spacing` [s] apart, computed in numpy.
 
-    The method of order 1 is semi-implicit Euler, which moves poses by the new velocities. It is not compiled.
+    The method of order 1 is semi-implicit Euler, which moves poses by the new velocities. This method is not compiled.
     """
     dt, dynamics = spacing / every, dynamics_of(mechanism, soft, least)
     step = semi_implicit_euler(dynamics) if order == 1 else runge_kutta(dynamics, TABLEAUS[order])
@@ -194,7 +195,7 @@ def in_numpy(
 
 @lru_cache(maxsize=1)
 def _truth(scene: Scene, instants: bytes) -> Trajectory:
-    """The scene's motion at instants [s] given as bytes. It is cached, since a prediction needs it a dozen times."""
+    """The cached motion of a scene at instants [s] given as bytes. A prediction needs the same motion a dozen times."""
     return freeze(scene.motion(np.frombuffer(instants)))
 
 

@@ -1,8 +1,8 @@
 """Predicted discretisation and regularisation errors of a scene, computed by the reference solver of the gate.
 
 A discretisation error A (h / tau)^p has two unknowns, the amplitude A and the time scale tau. A run of order 2 and a
-run of order 4 determine both. They predict the error of any order p at any step h in this scene. The error of
-regularised joints is proportional to their compliance, so one run predicts the error for all compliances.
+run of order 4 determine both. With A and tau, the error of any order p at any step h is known. The error of regularised
+joints is proportional to their compliance, so one run predicts the error for all compliances.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ DIFFERENCES = 1000  # Number of intervals for finite differences of the true mot
 
 @dataclass(frozen=True)
 class Prediction:
-    """Errors of a scene by quantity. They are scaled to any convergence order and regularisation.
+    """Errors of a scene by quantity, which can be scaled to any convergence order and regularisation.
 
     second: errors of the method of order 2 at `step` [s].
     fourth: errors of the method of order 4 at `step` [s].
@@ -75,7 +75,8 @@ class Prediction:
         return not math.isnan(self.second[quantity]) and (quantity != "gap" or any(self.holonomic))
 
     def error(self, quantity: str, order: float, step: float) -> float:
-        """The predicted error A (step / tau)^order. Infinite if the judge's runs failed, NaN if it is not defined.
+        """The predicted error A (step / tau)^order, or infinity if the judge's runs failed, or NaN if it is not
+        defined.
 
         An error of the pose causes an error of the velocity, which is the pose error times speed / length. An error of
         the velocity may be a slip (`Quantity.follows`).
@@ -125,7 +126,7 @@ class Prediction:
         )
 
     def _error_of_slip(self, quantity: str, speed: float) -> float:
-        """The error of a velocity or energy due to a slip of this speed [m/s]. Zero for other quantities."""
+        """The error of a velocity or energy due to a slip of this speed [m/s], or zero for other quantities."""
         if quantity == "energy":
             return 2 * speed / self.speed
         return {"m/s": speed, "rad/s": speed / self.length}.get(QUANTITY[quantity].unit, 0.0)
@@ -170,7 +171,7 @@ def scaled_softness_error(
 
 
 def _larger_finite(first: Mapping[str, float], second: Mapping[str, float]) -> Mapping[str, float]:
-    """Quantity -> the larger finite error. Infinite if neither error is finite, NaN if both errors are NaN."""
+    """Quantity -> the larger finite error, or infinity if neither error is finite, or NaN if both errors are NaN."""
     out = {}
     for name in QUANTITY_NAMES:
         known = [value for value in (first[name], second[name]) if not math.isnan(value)]
@@ -192,7 +193,7 @@ def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[SoftKind]:
 
 @cache
 def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Prediction:
-    """The prediction for a scene. It takes about two seconds and is cached in this process.
+    """The prediction for a scene, which takes about two seconds and is cached in this process.
 
     The judge runs with and without projection, and the larger error counts. In a prescribed motion projection removes
     the whole error. Without projection the constraints drift at singular positions.
@@ -304,7 +305,7 @@ class Softened(Task):
 
 
 def soft_tasks(scene: Scene, engines: tuple[Engine, ...]) -> tuple[Softened, ...]:
-    """The judge's runs for the regularisations that these engines declare. Empty for more than MOST_BODIES bodies."""
+    """The judge's runs for the regularisations of these engines. There are no runs for more than MOST_BODIES bodies."""
     if len(mechanism_of(scene).bodies) > MOST_BODIES:
         return ()
     return tuple(Softened(scene, *kind) for kind in sorted(kinds(scene, engines)))

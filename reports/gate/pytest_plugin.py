@@ -201,7 +201,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) -> bool:
-    """Whether a test is selected by --scene and --engine. So are tests that check all verdicts."""
+    """Whether --scene and --engine select a test, or the test checks all verdicts."""
     case = case_of(item)
     if case is None:
         return "verdicts" in getattr(item, "fixturenames", ())

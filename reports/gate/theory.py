@@ -24,11 +24,11 @@ from reports.model.page import Page
 from reports.model.quantities import QUANTITY
 
 # The observed order may be lower than the declared order by this difference. At an error of 0.1 rad the next power of
-# the step is a tenth of the leading term. At a step half a decade smaller it is a thirtieth. This changes the observed
-# order by up to 0.1. A last point slightly above rounding changes the order by a similar amount.
+# the step is a tenth of the leading term. At a step half a decade smaller it is a thirtieth. The next power changes the
+# observed order by up to 0.1. A last point slightly above rounding changes the order by a similar amount.
 BELOW = 0.4
-# The observed order may be higher than the declared order by this difference. It is below 1, so that a declared order
-# that is too low by 1 fails.
+# The observed order may be higher than the declared order by this difference. A difference below 1 ensures that a
+# declared order that is too low by 1 fails.
 ABOVE = 0.95
 # Angle errors [rad] above this value are not proportional to their cause, so they are left out of the fit of an order.
 PROPORTIONAL = 0.1
@@ -36,7 +36,7 @@ TOO_FEW = "fewer than three steps have an error above rounding and below a tenth
 
 
 def order(promise: ConvergenceOrder | NotDeclared, rows: Sequence[Measurement]) -> tuple[Check, ...]:
-    """The check of the observed convergence order. Empty without a declared order.
+    """The check of the observed convergence order. There is no check without a declared order.
 
     The measured value is the difference to the declared order divided by the allowed difference. An error that levels
     off, grows or is erratic has the order 0. With fewer than three usable points the bound is infinite, and the
@@ -62,9 +62,9 @@ def order(promise: ConvergenceOrder | NotDeclared, rows: Sequence[Measurement]) 
 # example, the constant of a spring that closes a gap in five steps is 5^2 / 2 at order 2. The errors of correct methods
 # in the grid are at most 10 times the judge's error, and mostly at most twice.
 ROOM = 20.0
-# Safety factor on the error that is predicted from a method's coarser steps. It allows for the next power of the step,
-# and for a largest error at another sample. It is below 10^0.5, so that an error that is equal at the two finest steps
-# fails even at first order.
+# Safety factor on the error that is predicted from a method's coarser steps. The factor allows for the next power of
+# the step, and for a largest error at another sample. With a factor below 10^0.5, an error that is equal at the two
+# finest steps fails even at first order.
 ROOM_OWN = 2.5
 # This factor replaces ROOM_OWN in a prescribed motion. There errors do not propagate, and the largest error is at the
 # same time for every step. The factor allows for the next power of the step, which contributes 6 % in the driven
@@ -75,8 +75,8 @@ ENOUGH = 2
 # Without a declared order an error may be this many times the difference between the errors at the method's steps. If
 # the step has a smaller effect, the model is a different one.
 ROOM_UNPROMISED = 20.0
-# An error without a declared order passes if it is below this fraction of the largest comparable error. This allows for
-# errors at two steps that are equal by chance.
+# An error without a declared order passes if it is below this fraction of the largest comparable error. Small errors at
+# two steps may be equal by chance.
 SMALL = 1e-3
 
 
@@ -121,10 +121,10 @@ def theory(
     """The checks of the outcome and of each quantity of a row.
 
     coarser: rows of the same method at larger steps. Their errors, scaled by the declared order, give a second bound.
-    It needs ENOUGH rows, or one row if the judge's run has diverged. Without a declared order the bound follows from
-    the differences between the errors at the method's steps.
-    as_soft: the judge's errors with this regularisation. It is needed if errors are not proportional to the compliance.
-    NaN fails unless the engine declares it. A check that does not apply has an infinite bound and gives the reason.
+    This bound needs ENOUGH rows, or one row if the judge's run has diverged. Without a declared order the bound follows
+    from the differences between the errors at the method's steps.
+    as_soft: the judge's errors with this regularisation, if errors are not proportional to the compliance. NaN
+    fails unless the engine declares it. A check that does not apply has an infinite bound and gives the reason.
     """
     outcome = Outcome(row.outcome)
     if outcome is Outcome.UNSUPPORTED:
@@ -292,7 +292,7 @@ def checks(
     judge: Prediction | None = None,
     as_soft: Mapping[str, float] | None = None,
 ) -> tuple[Check, ...]:
-    """The checks of theory at the finest step, and of the order over all rows. Empty if the case is unsupported.
+    """The checks of theory at the finest step, and of the order over all rows. An unsupported case has no checks.
 
     rows: from coarse to fine steps. judge: the prediction for the scene, computed here if None. as_soft: the judge's
     errors with `own_softness`, computed here if None.

@@ -71,13 +71,13 @@ class CaseVerdict:
 
     @property
     def worst(self) -> Check | None:
-        """The check of theory with the largest ratio of value to bound. None if the engine cannot build the scene."""
+        """The check of theory with the largest ratio of value to bound, or None for an unsupported scene."""
         return nearest(self.theory) if self.theory else None
 
 
 @dataclass(frozen=True)
 class JudgeRun:
-    """A job of the judge. It computes a prediction, or errors with the regularisation of a method."""
+    """A job of the judge that computes a prediction, or errors with the regularisation of a method."""
 
     scene: Scene
     soft: frozenset[SoftKind] | Regularisation
@@ -175,7 +175,7 @@ def lost(baseline: Baseline, grid: Iterable[Case]) -> tuple[tuple[str, str], ...
 
 
 def grown(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> tuple[Check, ...]:
-    """The checks of `reports.gate.change.growth`. Empty if the versions are those of the baseline."""
+    """The checks of `reports.gate.change.growth`. There are no checks for the versions of the baseline."""
     if baseline.same_versions:
         return ()
     return growth(pair for verdict in verdicts for pair in verdict.pairs)

@@ -24,8 +24,8 @@ Purpose = Literal["sweep", "usual", "beside", "failure", "growth", "large", "map
 QUICK = (1, 3, 10)
 FULL = (1, 3, 10, 30, 100, 300)
 
-# The largest estimated CPU time [s] of a cell in a sweep, except at the coarsest step. It is an estimate and not a
-# measurement, so the grid and errors.csv are the same on every machine.
+# The largest estimated CPU time [s] of a cell in a sweep, except at the coarsest step. An estimate is the same on every
+# machine, and so are the grid and errors.csv.
 COST_LIMIT = 0.8
 # If a finer step would divide the error by more than this factor, the error is only rounding. So steps finer than QUICK
 # are left out for methods of high order. Methods of order 4 have five steps.
@@ -103,7 +103,7 @@ _fingerprint = lru_cache(maxsize=4096)(fingerprint)  # The cells of a scene in a
 
 
 def estimated_cost(cell: Cell) -> float:
-    """CPU time of one run [s], estimated by the engine's formula. It does not depend on the machine."""
+    """CPU time of one run [s], estimated by the engine's formula independently of the machine."""
     # The time is rounded to a nanosecond, so that rounding errors do not decide whether a cell exceeds a limit.
     return round(cell.sample_count * cell.every * _step_cost(cell.scene, cell.engine), 9)
 
@@ -130,7 +130,7 @@ def _call(engine: Engine, method: str, scene: Scene, convert: Callable[[Any], An
 
 @lru_cache(maxsize=512)
 def mechanism_of(scene: Scene) -> Mechanism:
-    """The mechanism of a scene. It is cached, since it is needed hundreds of times."""
+    """The mechanism of a scene. The result is cached, since it is needed hundreds of times."""
     return scene.mechanism()
 
 
@@ -166,7 +166,7 @@ def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool
 
 
 def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDED) -> str:
-    """The reason why a sweep leaves out this cell, or empty. It does not apply to the coarsest step."""
+    """The reason why a sweep leaves out a cell with a finer step than the coarsest one, or an empty text."""
     cost = estimated_cost(cell)
     most = max(cost_limit, COST_LIMIT) if cell.every <= max(QUICK) else cost_limit
     if cost > most:

@@ -30,7 +30,7 @@ class Check:
 
     @property
     def nearness(self) -> float:
-        """The ratio measured / bound. It is infinite if `measured` is not finite. The check fails above 1."""
+        """The ratio measured / bound, or infinity if `measured` is not finite. Above 1 the check fails."""
         if not math.isfinite(self.measured):
             return math.inf
         return self.measured / self.bound if self.bound > 0 else (math.inf if self.measured > 0 else 0.0)
@@ -49,7 +49,7 @@ class Check:
 class Deviation:
     """A known failure of a check, with either a factor or an outcome. Raises ValueError."""
 
-    reason: str  # It begins with "upstream:", "by design:" or "ours:".
+    reason: str  # Text that begins with "upstream:", "by design:" or "ours:".
     factor: float | None = None  # Largest ratio measured / bound.
     outcome: Outcome | None = None  # The known outcome.
     rounding: bool = False  # Whether the error is amplified rounding, which depends on the processor.
@@ -78,7 +78,7 @@ def nearest(checks: Iterable[Check]) -> Check:
 def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome: str = "") -> tuple[str, ...]:
     """Sentences about unexpected failures, and about known deviations that have grown or no longer occur.
 
-    outcome: outcome of the checked run. It must be the known outcome of a deviation.
+    outcome: outcome of the checked run, which must be the known outcome of a deviation.
     """
     out: list[str] = []
     checks = tuple(checks)

@@ -67,7 +67,7 @@ class Sweep:
 
     @property
     def lucky(self) -> bool:
-        """Whether the smallest error is far below the plateau. Then two errors cancel at that step."""
+        """Whether the smallest error is far below the plateau, which means that two errors cancel at its step."""
         return self.verdict is Verdict.PLATEAU and self.best < self.plateau / 2
 
 
@@ -129,7 +129,7 @@ def _longest_run(mask: np.ndarray) -> tuple[int, int]:
 def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
     """(limit, uncertainty) if the last two intervals are flat, or NaN.
 
-    One flat interval suffices if the errors rise to a limit. Then two errors have cancelled at a coarser step.
+    One flat interval suffices if the errors rise to a limit after two errors have cancelled at a coarser step.
     """
     if len(errors) < 3 or abs(slopes[-1]) > FLAT:
         return NAN, NAN

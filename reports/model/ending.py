@@ -49,7 +49,7 @@ NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
 
 
 def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str] = NONE_ABSENT) -> BadInput:
-    """The error about an unknown word. It suggests the most similar known word, regardless of case.
+    """The error about an unknown word, with the most similar known word, regardless of case.
 
     absent: name of an item that is not installed -> a sentence on how to install it.
     """

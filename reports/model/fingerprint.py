@@ -86,7 +86,7 @@ def _parts(values: Iterable[Any]) -> Iterator[Any]:
 
 
 def _files(module: str) -> tuple[Path, ...]:
-    """The sources of a module, and the files whose names occur in them. Empty for an installed module."""
+    """The sources of a module that is not installed, and the files whose names occur in these sources."""
     try:
         spec = find_spec(module)
     except (ImportError, ValueError):  # The module has no spec.
@@ -105,7 +105,7 @@ def _files(module: str) -> tuple[Path, ...]:
 
 @cache
 def _our_files(folders: tuple[str, ...]) -> str:
-    """A digest of this suite's sources. It does not depend on the folder of the checkout."""
+    """A digest of this suite's sources, which is independent of the folder of the checkout."""
     paths = (sorted((ROOT / folder).rglob(pattern)) for folder in folders for pattern in ("*.py", "*.mjs"))
     return _content(path for group in paths for path in group)
 

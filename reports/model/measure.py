@@ -38,7 +38,7 @@ SAME_INSTANT = 1e-15  # Relative difference between equal instants due to roundi
 BUDGET = 0.015
 MOST_RUNS = 5
 LONG_RUN = 0.05  # A longer run [s] is not repeated, since its time is only 1 % above the minimum of three repetitions.
-TRUTHS = "truths"  # The folder of exact motions beside a store. It may be deleted at any time.
+TRUTHS = "truths"  # The folder of exact motions beside a store, which may be deleted at any time.
 SHORT_MOTION = 5e-3  # A motion that is computed in less time [s] is not stored, since reading it would take longer.
 # Exceptions when a damaged file is read. A part that is marked as encrypted raises RuntimeError.
 DAMAGES = (OSError, ValueError, KeyError, EOFError, RuntimeError, MemoryError, struct.error, zlib.error, BadZipFile)

@@ -107,7 +107,7 @@ FROM_OUTSIDE = {
 
 
 def from_outside(code: int | None) -> bool:
-    """Whether the exit code means that another process ended this process. True for the unknown exit code None."""
+    """Whether the exit code is unknown (None), or means that another process has ended this process."""
     return code is None or -code in FROM_OUTSIDE
 
 

@@ -90,7 +90,7 @@ class Material:
 
 
 def usual_series(row: Measurement) -> bool:
-    """Whether charts show the method of the row. It is run in every scene, or is a usual variant of an engine."""
+    """Whether charts show the method of the row, since it is run in every scene or is a usual variant."""
     from engines.registry import VARIANTS, method_name
 
     return row.variant in FEATURED or row.method in map(method_name, VARIANTS)
@@ -105,7 +105,7 @@ class Page:
     engines: tuple[Engine, ...] = ()
     companions: tuple[Scene, ...] = ()  # A run of one of these scenes includes the cells of this page's failures.
     borrowed: tuple[Cell, ...] = ()  # Cells that other pages run and whose rows this page uses.
-    # A template, which may extend "base.md". By default it is page.md in the folder of the page, else "base.md".
+    # A template, which may extend "base.md". The default is page.md in the folder of the page, else "base.md".
     template: Path | None = None
     failures: tuple[Failure, ...] = ()
     # Whether an engine runs a scene. An engine for a special joint runs only in scenes with this joint.
@@ -133,7 +133,7 @@ class Page:
 
     @property
     def advised_scene(self) -> Scene | None:
-        """The scene for which the page recommends settings; None on a page without scenes."""
+        """The scene for which the page recommends settings, or None on a page without scenes."""
         return next((scene for scene in self.scenes if self.advised in ("", scene.name)), None)
 
     @property

@@ -15,9 +15,9 @@ DIGITS = 4  # Number of significant digits in a report's CSV files.
 class Quantity:
     """A kind of error.
 
-    The rounding error of positions and angles is 1e-11. It is about 1e-16 per step for up to 1e5 steps, and the problem
-    may be ill-conditioned. Velocities are differences of positions, and reactions are differences of velocities. So
-    their rounding errors are larger.
+    The rounding error of positions and angles is 1e-11. A step has a rounding error of about 1e-16, there are up to 1e5
+    steps, and the problem may be ill-conditioned. Velocities and reactions have larger rounding errors, since they are
+    differences of positions and of velocities.
     """
 
     name: str  # A field of Measurement.
@@ -28,7 +28,7 @@ class Quantity:
     is_of_joints: bool = False  # Whether tables of scenes show this quantity in addition to the quantity of the page.
     follows: str = ""  # A quantity whose error causes an error of this quantity.
     lag: float = 0.0  # Delay of a first-order value in a prescribed motion, in steps.
-    # The largest comparable error. It is relative to the mechanism's length, or to the largest speed or rate. Errors of
+    # The largest comparable error, relative to the mechanism's length, or to the largest speed or rate. Errors of
     # angles [rad] and of relative quantities are absolute.
     largest: float = 1.0
     # Whether orders below 2 use the time scale of the angle if this is shorter. The judge's fourth-order run does not
@@ -71,7 +71,7 @@ def quantity(name: str) -> Quantity:
 
 
 def printed(value: float) -> float:
-    """One unit of the last printed digit of a value with DIGITS digits. Zero for 0, infinity and NaN."""
+    """One unit of the last printed digit of a value with DIGITS digits, or zero for 0, infinity and NaN."""
     if value == 0 or not math.isfinite(value):
         return 0.0
     return 10.0 ** (math.floor(math.log10(abs(value))) + 1 - DIGITS)
@@ -90,8 +90,8 @@ def rounding_tolerance(name: str, before: float, amplified: float = 1.0) -> tupl
 def agrees(name: str, now: float, before: float, amplified: float = 1.0) -> bool:
     """Whether two values of a quantity differ by at most `rounding_tolerance`. NaN agrees with NaN.
 
-    `before` may be rounded to DIGITS. In 4,280 rows of two processors only eight numbers differ by more. They belong to
-    pivots at the contact of two curves, which amplify rounding.
+    `before` may be rounded to DIGITS. In 4,280 rows of two processors only eight numbers differ by more. These are
+    errors of pivots at the contact of two curves, which amplify rounding.
     """
     allowed = sum(rounding_tolerance(name, before, amplified))
     if not (math.isfinite(now) and math.isfinite(before)):

@@ -28,7 +28,7 @@ Values = Mapping[str, Array | str]
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """The result of a task. It consists of values by name, or of a sentence with the reason why there are none."""
+    """The result of a task, with values by name, or a sentence with the reason why there are no values."""
 
     outcome: Outcome
     sentence: str = ""

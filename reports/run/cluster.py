@@ -33,7 +33,7 @@ WORDS = re.compile(r"(?:tcp|tls)://\S+:\d+|local:([1-9]\d{0,2})")
 FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"
 ANSWERS_WITHIN = 10.0  # Longest time until a scheduler answers [s].
 WORKERS_WITHIN = 120.0  # Longest time until the first worker connects [s].
-CHUNK = 2.0  # Expected time of a chunk [s]. It is much longer than the time to send it and to start processes.
+CHUNK = 2.0  # Expected time of a chunk [s], which is much longer than the time to send it and to start processes.
 _closing = threading.Event()  # Set when the client has ended, so that local workers end their processes.
 
 
@@ -72,7 +72,7 @@ def chunks(items: Iterable[Any]) -> list[list[Any]]:
 
 
 def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_key: bytes) -> Any:
-    """The result of a pickled (item, key), or a Refusal. It runs in a worker process. paths: sys.path of the client."""
+    """The result of a pickled (item, key), or a Refusal. Workers call this function. paths: sys.path of the client."""
     sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
     try:
         item, key = pickle.loads(item_and_key)
@@ -84,7 +84,7 @@ def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_ke
 
 
 def run_chunk(data: bytes) -> bytes:
-    """The pickled answers (index of the item, result or Loss, note) to a pickled chunk. It runs in a Dask worker."""
+    """The pickled answers (index of the item, result or Loss, note) to a pickled chunk. A Dask worker calls it."""
 
     def end_when_closing(running: list[Any]) -> None:
         if _closing.is_set():

@@ -22,7 +22,7 @@ _folders: list[Path] = []  # The existing temporary folders of this process.
 
 @contextmanager
 def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
-    """A context with a new folder, which is removed at the end. By default it is in the system's temporary folder."""
+    """A context with a new folder in `parent`, by default in the system's temporary folder. The end removes it."""
     folder = _new_folder(parent)
     try:
         yield folder
@@ -40,7 +40,7 @@ def socket_folder() -> Path:
 
 
 def remove_all() -> None:
-    """Remove all temporary folders of this process. It is called before an exit without cleanup."""
+    """Remove all temporary folders of this process before an exit without cleanup."""
     for folder in tuple(_folders):
         _remove(folder)
 

@@ -153,7 +153,7 @@ def _reason(text: str) -> str:
 
 
 def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
-    """The error that no distribution has the version. It lists the nearest versions. texts: name -> pip's output."""
+    """The error that no distribution has the version, with the nearest versions. texts: name -> pip's output."""
     names, reasons = " or ".join(texts), {name: _reason(text) for name, text in texts.items()}
     if set(reasons.values()) == {OFFLINE}:
         return BadInput(f"{names} {version} can't be fetched: {OFFLINE}")

@@ -138,7 +138,7 @@ def run_into(
 
 
 def support_of(cell: Cell) -> str:
-    """The engine's reason why it can't build a scene's mechanism. Empty if it can build it."""
+    """The engine's reason why it can't build a scene's mechanism, or an empty text."""
     from engines import Unsupported
 
     try:

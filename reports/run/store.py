@@ -99,7 +99,7 @@ class Store:
         self._put(row.key, json.dumps(asdict(row)))
 
     def put_answer(self, task: Task, answer: Answer) -> None:
-        """Store the answer to a task. It replaces an older answer."""
+        """Store the answer to a task and replace any older answer."""
         values = {name: value if isinstance(value, str) else _packed(value) for name, value in answer.values.items()}
         fields_of = {name: getattr(answer, name) for name in ("outcome", "sentence", "limit")}
         self._put(task.key, json.dumps({**fields_of, "values": values}))

@@ -43,7 +43,7 @@ TICK = 0.2  # Time between two readings of the clock [s].
 IMPORTS = 2.0  # CPU time for the import of an engine [s]. A worker imports it when it gets its first job.
 START_LIMIT = 120.0  # Longest wall time until a worker is ready [s].
 MOST_FAILED_STARTS = 5  # Largest number of failed starts in a row.
-PAUSE = 0.1  # Pause after a failed start [s]. It is multiplied by the number of failed starts in a row.
+PAUSE = 0.1  # Pause [s] after a failed start, multiplied by the number of failed starts in a row.
 MOST_WORKERS = 60  # Windows can wait for at most 63 handles.
 
 Watch = Callable[[list[Any]], None]
@@ -58,12 +58,12 @@ class WorkersLost(Broken):
 @dataclass
 class Job:
     item: Any
-    earlier: str = ""  # How the worker of the first try ended. Empty during the first try.
+    earlier: str = ""  # How the worker of the first try ended, or an empty text during the first try.
     earlier_outside: bool = False  # Whether another program killed the worker of the first try.
 
 
 def wall_limit(limit: float) -> float:
-    """Limit of wall time [s] for a limit of CPU time [s]. It allows for a machine that is ten times overloaded."""
+    """Limit of wall time [s] for a limit of CPU time [s], on a machine that is up to ten times overloaded."""
     return 10 * limit + 60
 
 
@@ -99,7 +99,7 @@ class Pool:
     ) -> None:
         self._function, self._terms, self._most = function, terms, most
         self._waiting = deque(Job(item) for item in items)
-        self._retries: deque[Job] = deque()  # These jobs are assigned to new workers.
+        self._retries: deque[Job] = deque()  # jobs for new workers
         self._workers: list[Worker] = []
         self._failed_starts = 0
         self._context = start_method()

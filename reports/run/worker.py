@@ -30,11 +30,11 @@ from reports.model.ending import describe
 from reports.model.outcomes import Loss, Outcome, failure, out_of_time
 from reports.run.files import socket_folder
 
-# These modules import all engines. They are imported by name at run time, so that the keys of rows do not depend on all
-# engines.
+# These modules import all engines. Rows must not depend on all engines, so the modules are imported by name at run
+# time.
 GUARD, REGISTRY = "planar_crosscheck", "engines.registry"
 IMPORTED_ONCE = ("reports.model.measure", REGISTRY)  # The fork server imports these modules for all workers.
-PATIENCE = 30.0  # Longest time until a killed process has ended [s]. It may write a core dump.
+PATIENCE = 30.0  # Longest time until a killed process has ended [s]. The process may write a core dump.
 READY = b"ready"
 SPENT = 152  # 128 + SIGXCPU, the exit code of a worker that ends itself because its job has used up its CPU time.
 SAFE_PATH = "PYTHONSAFEPATH"  # With this variable, Python does not add the current folder to sys.path.
@@ -59,7 +59,7 @@ def cpu_time(process: int) -> float | None:
 
 
 def stop_all() -> None:
-    """Kill every worker of this process. It is called before an exit without cleanup."""
+    """Kill every worker of this process before an exit without cleanup."""
     for child in multiprocessing.active_children():
         _kill(child)
 
@@ -86,7 +86,7 @@ class Worker:
         return 0.0 if now is None or self.cpu is None else now - self.cpu
 
     def exit_code(self) -> int | None:
-        """The exit code, after waiting up to PATIENCE. None if it is unknown or the process has not ended."""
+        """The exit code after a wait of up to PATIENCE, or None if it is unknown or the process has not ended."""
         ended = wait([self.process.sentinel], PATIENCE)
         with _reading:
             if ended:  # The sentinel of a spawned process is closed before the exit code is available.
@@ -101,7 +101,7 @@ class Worker:
 
 
 def start_method(*modules: str) -> Any:
-    """The multiprocessing context. It is a fork server that imports these modules, or spawn if there is none."""
+    """The multiprocessing context: a fork server that imports these modules, or spawn if there is no fork server."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
@@ -112,7 +112,7 @@ def start_method(*modules: str) -> Any:
 
 
 def start_early(*modules: str) -> None:
-    """Start the fork server without waiting for it. It also imports these modules.
+    """Start the fork server, which also imports these modules, without waiting for it.
 
     Without a fork server each worker imports the modules, which is only slower.
     """
@@ -135,7 +135,7 @@ def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker
     ours, theirs = context.Pipe()
     process = context.Process(target=work, args=(theirs, folder, limit, wall), daemon=True)
     with theirs, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # It may warn of a killed resource tracker.
+        warnings.simplefilter("ignore")  # warnings of a killed resource tracker
         try:
             with _reading:
                 process.start()
@@ -147,7 +147,7 @@ def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker
 
 @contextmanager
 def process_start() -> Iterator[None]:
-    """Block Ctrl-C while a process starts. It would print a traceback, and the process would not be supervised.
+    """Block Ctrl-C while a process starts. Otherwise Ctrl-C could print a traceback and prevent the supervision.
 
     The started processes inherit the blocked signal. `python -c` starts them and would import modules from the current
     folder first, so PYTHONSAFEPATH is set.
@@ -156,7 +156,8 @@ def process_start() -> Iterator[None]:
     os.environ.setdefault(SAFE_PATH, OURS)
     before = None
     if hasattr(signal, "pthread_sigmask"):
-        # The resource tracker starts first, since its start unblocks Ctrl-C. It warns if its predecessor was killed.
+        # The resource tracker starts first, since its start unblocks Ctrl-C. A new tracker warns if the old one was
+        # killed.
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             resource_tracker.ensure_running()
@@ -185,7 +186,7 @@ PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # Whether the parent can re
 
 
 class CpuDeadline:
-    """The CPU time at which the current job is ended. It is infinite between jobs."""
+    """The CPU time at which the current job is ended, or infinity between jobs."""
 
     def __init__(self) -> None:
         self.end = float("inf")
@@ -295,7 +296,7 @@ def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[
 
 @contextmanager
 def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
-    """Set a system timer. It ends the process even in native code that never returns to the interpreter."""
+    """Set a system timer that ends the process even in native code that never returns to the interpreter."""
     clock.end = time.process_time() + limit
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_DFL)

@@ -61,7 +61,7 @@ class VersionColumn:
 
     @property
     def mark(self) -> str:
-        """A sentence that explains why this version is known to be wrong. Empty for other versions."""
+        """A sentence that explains why this version is known to be wrong, or an empty text."""
         parts = (part for row in self.rows for part in row.sentence.split("; ") if MARK in part)
         return next(parts, "").removeprefix("ours: ")
 

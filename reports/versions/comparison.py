@@ -50,7 +50,7 @@ class OrderChange(NamedTuple):
 
 @dataclass(frozen=True)
 class RowComparison:
-    """The comparison of pairs (earlier row, later row). Both rows of a pair belong to the same cell."""
+    """The comparison of pairs (earlier row, later row) that belong to the same cell."""
 
     pairs: tuple[tuple[Measurement, Measurement], ...]
 
@@ -107,7 +107,7 @@ class RowComparison:
 
     @property
     def chief(self) -> Difference:
-        """The largest difference. Differences for the worse come first. By default the angle at the smallest step."""
+        """The largest difference for the worse, else the largest one, else the angle at the smallest step."""
         if not self.differences:
             return Difference(*min(self.pairs, key=lambda pair: pair[1].step), "angle", False)
         return max(self.differences, key=lambda difference: (difference.worse, difference.factor))

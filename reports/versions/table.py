@@ -58,7 +58,7 @@ class Entry:
 
     @property
     def size(self) -> float:
-        """The error, or the rounding error of the quantity if this is larger. Infinite without an error."""
+        """The larger one of the error and the rounding error of the quantity, or infinity without an error."""
         rounding = ACCELERATION_ROUNDING if self.quantity == ACCELERATION else quantity(self.quantity).rounding
         return max(self.error, rounding) if self.comparable else math.inf
 
@@ -184,7 +184,7 @@ def _as_published(now: Entry, before: Entry) -> Entry:
 
 
 def change(before: Entry, after: Entry) -> str:
-    """The change between two versions. Empty if there is no change.
+    """The change between two versions, or an empty text.
 
     "better" and "WORSE" mean a factor of more than three. "other" means two different outcomes without an error.
     """
