@@ -1,4 +1,4 @@
-"""Tests of models whose initial state violates joints. They start at the nearest consistent state or are refused."""
+"""Tests that a model whose initial state violates joints starts at the nearest consistent state or is refused."""
 
 # pyright: reportAttributeAccessIssue=false
 # (MuJoCo's bindings are compiled and carry no types.)
@@ -157,7 +157,7 @@ def test_joints_open_by_six_digit_rounding_are_closed(size):
     assert [note for note in reading.notes if "nearest positions" in note.reason]
     run = reading.model.run(10, 1)
     assert run.pose[0] == pytest.approx(mechanism.pose, abs=1e-12 * size)
-    bars[1].position += (1e-4 * size, 0)  # This gap is larger than rounding to six digits.
+    bars[1].position += (1e-4 * size, 0)  # larger than rounding to six digits
     with pytest.raises(InvalidMechanism, match="is open by"):
         read(space, 1e-3)
 

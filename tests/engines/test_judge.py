@@ -32,7 +32,7 @@ def test_all_errors_have_the_order_of_the_method(order):
 
 def test_a_projection_closes_the_joints_without_loss_of_accuracy():
     alone, projected = errors(SWINGING, 4, 1), errors(SWINGING, 4, 1, project=True)
-    # One Newton step squares a gap of 1e-8 m. Then the twist is projected with the rows of the new pose.
+    # One Newton step squares a gap of 1e-8 m. The twist is projected with the rows of the new pose.
     assert max(projected["gap"], projected["slip"]) < 1e-12
     assert projected["angle"] < 3 * alone["angle"]
 

@@ -1,6 +1,6 @@
-"""Comparison of the judge with an independent solution in random mechanisms. This solution is called the witness.
+"""Comparison of the judge with the witness, an independent solution, in random mechanisms.
 
-The witness shares no code with `engines.lagrange` or `Mechanism.rows`. It integrates Newton's law with multipliers by
+The witness shares no code with `engines.lagrange` or `Mechanism.rows`, and integrates Newton's law with multipliers by
 scipy. A row contains the relative velocities of two points for a unit rate of each coordinate, as in chapter 18. The
 derivative of a row is computed by a complex step. Other tests check rolling contacts.
 """
@@ -28,7 +28,7 @@ WITNESSED_KINDS = tuple(kind for kind in ALL_KINDS if kind != "roll")
 
 
 class BodyState(NamedTuple):
-    """The position, angle and velocities of a body. They are numbers or arrays."""
+    """The position, angle and velocities of a body, as numbers or arrays."""
 
     x: Any
     y: Any
@@ -190,7 +190,7 @@ def test_the_judge_agrees_with_newtons_law_in_random_mechanisms(number: int) -> 
 
 
 class WitnessedCase(NamedTuple):
-    """The comparison of a motion, in rad and in units of the mechanism's length and time. NaN if a motion ends early.
+    """The comparison of a motion, in rad and in units of the mechanism. A difference is NaN if a motion ends early.
 
     resolved: whether the judge claims an error of at most JUDGE_CLAIM.
     difference: largest difference between judge and witness.
@@ -231,7 +231,7 @@ def compared(
     return WitnessedCase(number, is_resolved, difference((judge.pose, judge.twist), tight), difference(loose, tight))
 
 
-WITNESS_SEED = 291528136  # It follows from the hash of a commit, so nobody has selected it.
+WITNESS_SEED = 291528136  # The seed follows from the hash of a commit, so nobody has selected it.
 STIFF_NUMBERS = (59, 114, 237, 411)  # Springs make these mechanisms 10 to 3204 times faster.
 
 

@@ -165,7 +165,7 @@ def test_baumgartes_spring_uses_the_drives_angle_at_each_stage():
 def test_the_semi_implicit_euler_method_moves_a_pose_with_the_new_velocity():
     mechanism = Mechanism((Body("stone", 2.0, 1.0, (0, 0, 0), (1.0, 0.0, 3.0)),), (), (0.0, -9.81))
     run = Lagrange("euler", "none").build(mechanism, 0.1)(10, 1)
-    # The pose moves by the new velocities. So the factors of g dt^2 are 1 to 10 with the sum 55, and not 0 to 9.
+    # The pose moves by the new velocities, so the displacement is 55 g dt^2, and 55 is the sum of 1 to 10.
     np.testing.assert_allclose(run.pose[-1, 0], [1.0, -9.81 * 0.01 * 55, 3.0], rtol=1e-14)
 
 

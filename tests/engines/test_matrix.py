@@ -172,11 +172,11 @@ OF_PYMUNK = (
     # The first force is extrapolated in time from later steps, in addition to the extrapolation in the step.
     Row(pymunk.EXTENDED, CarAndTrailer(), 1, pose=1e-10, twist=1e-8, reaction=1e-4, since=1, span=5.0),
     Row(pymunk.EXTENDED, blade_on_a_board(), 1, pose=1e-9),
-    Row(methods.SKATE_CENTRE, SLEIGH, floor=1.0, span=3.0),  # The skate has no effect.
+    Row(methods.SKATE_CENTRE, SLEIGH, floor=1.0, span=3.0),  # The skate has no effect on the motion.
     Row(methods.SKATE_CENTRE, ChaplyginSleigh(offset=0.0), 10, pose=2e-2, order=(1,), span=3.0),
-    Row(methods.SKATE_POINT, SLEIGH, floor=1.0, span=3.0),  # It does not slip.
+    Row(methods.SKATE_POINT, SLEIGH, floor=1.0, span=3.0),  # without slip
     Row(pymunk.EXTENDED, SLIDER, pose=1e-11, twist=1e-9, reaction=1e-7),
-    # cpGrooveJoint solves both directions and uses only one. This is correct only if the normal is a principal axis.
+    # cpGrooveJoint solves both directions and uses only one, which is correct only if the normal is a principal axis.
     Row(replace(pymunk.DEFAULT, slot="groove"), rod_in_a_slot(), 1, floor=0.1),
     Row(pymunk.LEAPFROG, rod_in_a_slot(), order=(2,)),
     Row(pymunk.EXTENDED, rod_in_a_slot(), pose=1e-10, reaction=1e-6),
@@ -208,7 +208,7 @@ OF_MUJOCO = (
     Row(mujoco.TUNED, SLEIGH, order=(1,), span=3.0, pose=2e-2, reaction=5e-3, since=1),
     # The friction along the blade has MuJoCo's smallest coefficient, 1e-5.
     Row(BLADE, SLEIGH, 25, pose=5e-3, reaction=5e-3, since=1, floor=1e-4, span=3.0),
-    # The slip is u w (speed times rate) times the time constant of friction, 0.02 s. It does not depend on the step.
+    # The slip is u w (speed times rate) times the time constant of friction, 0.02 s, at any step.
     Row(mujoco.DEFAULT, SLEIGH, order=(0,), floor=5e-3, pose=5e-2, reaction=0.1, since=10, span=3.0),
     Row(SOFT, SLEIGH, 5, order=(0,), floor=1e-6, span=3.0),
     Row(mujoco.EXTENDED, blade_on_a_board(), pose=1e-9),

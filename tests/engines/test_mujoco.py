@@ -38,7 +38,7 @@ def heavy_coupler(ratio: float) -> Mechanism:
 
 
 def arch(links: int, length: float = 0.02) -> Mechanism:
-    """A chain of bars along a half circle. Both ends are pinned to the ground."""
+    """A chain of bars along a half circle, with both ends pinned to the ground."""
     angle = np.linspace(np.pi, 0, links + 1)
     points = length / (2 * np.sin(np.pi / 2 / links)) * np.stack([np.cos(angle), -np.sin(angle)], axis=-1)
     places = [(float(x), float(y)) for x, y in points]
@@ -175,7 +175,8 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
     spring, damper = stiffness.gains(mechanism, dt)
     assert damper**2 == pytest.approx(4 * spring, rel=1e-14)
     first, second = stiffness.reference(mechanism, dt)
-    if first < 0:  # Negative numbers are stiffness and damping. Others are a time constant and a damping ratio.
+    # Negative numbers are stiffness and damping. Positive numbers are a time constant and a damping ratio.
+    if first < 0:
         assert (-first, -second) == pytest.approx((spring, damper), rel=1e-14)
     else:
         assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
@@ -214,7 +215,7 @@ def test_a_loop_of_a_hundred_links_is_solved_by_pgs_and_not_by_newton() -> None:
     built = EXTENDED.build(chain, 1e-3)
     assert built.model.compiled.opt.solver == mujoco.mjtSolver.mjSOL_PGS
     motion = built(2, 10)
-    # The step of 1 ms is 1/45 of the time scale. So the integrator causes the error, and not the solver.
+    # The step of 1 ms is 1/45 of the time scale, so the integrator causes the error, and not the solver.
     assert [warning for warning in motion.warnings if "unresolved" not in warning] == []
     assert np.abs(chain.gap(motion.pose, motion.t)).max() < 1e-8
     newton = replace(EXTENDED, solvers=("Newton",)).build(chain, 1e-3)
@@ -223,7 +224,7 @@ def test_a_loop_of_a_hundred_links_is_solved_by_pgs_and_not_by_newton() -> None:
 
 def test_samples_after_a_reset_are_nan(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    rate = 0.999e10  # A torque increases the rate [rad/s] to 1e10. Then MuJoCo resets the state.
+    rate = 0.999e10  # A torque increases the rate [rad/s] to 1e10, at which MuJoCo resets the state.
     body = Body("bar", 1.0, 1 / 12, (0.5, 0.0, 0.0), (0.0, rate / 2, rate))
     torque = Torque("torque", None, "bar", 3e9)
     mechanism = Mechanism((body,), (Pin("A", None, "bar", (0.0, 0.0), (-0.5, 0.0)),), (0.0, 0.0), (torque,))

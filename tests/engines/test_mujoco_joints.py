@@ -122,7 +122,8 @@ def test_the_slip_of_a_user_row_agrees_with_its_declared_regularisation():
     motion = engine.build(mechanism, 1e-3)(CHAPLYGIN_SLEIGH.samples, 10)
     rows = mechanism.rows(mechanism.pose)
     inverse = float(((rows / mechanism.inertias.reshape(-1)) @ rows.T)[0, 0])
-    # The slip satisfies slip' + damping slip = compliance A F. It reaches half of its limit, since the force varies.
+    # The slip satisfies slip' + damping slip = compliance A F. The force varies, so slip reaches only half of its
+    # limit.
     limit = soft.compliance * inverse * np.abs(motion.reaction).max() / soft.damping
     assert 0.3 * limit < np.abs(mechanism.slip(motion.pose, motion.twist)).max() < limit
 

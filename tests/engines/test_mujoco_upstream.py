@@ -46,7 +46,7 @@ def test_upstream_the_smallest_time_constants_of_equalities_and_contacts(integra
     for refsafe in ("enable", "disable"):
         of_equality = of_contact = 2e-3
         if integrator == "discrete":
-            of_equality, of_contact = 1e-4, 1e-3 / 0.9**0.5  # Then the stiffness of the contact is 1 / dt^2.
+            of_equality, of_contact = 1e-4, 1e-3 / 0.9**0.5  # The stiffness of the contact is 1 / dt^2.
         if refsafe == "disable":
             of_equality = of_contact = 1e-4
         # The damping of a row is 2 / (dmax timeconst).
@@ -79,7 +79,7 @@ def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone:
 # For some trees with branches, the Newton solver of release 4.0.0 computed wrong accelerations without a warning. The
 # sparse Cholesky factor of its Hessian was wrong (changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767).
 
-# Largest difference of dense and sparse accelerations, relative to the largest acceleration. It is amplified rounding.
+# Largest difference of dense and sparse accelerations due to rounding, relative to the largest acceleration.
 AGREEMENT = 1e-8
 STATE_SPREAD = (
     0.3  # Distance of the random states from the initial state [rad or m], so that no symmetry hides an error.

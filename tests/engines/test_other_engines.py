@@ -130,7 +130,7 @@ def test_exudyns_reactions_need_consistent_accelerations_at_the_start():
 
 
 def test_exudyns_motion_does_not_depend_on_units():
-    # By default Exudyn takes no step below 1e-8 s and rounds sample times to 1e-10 s. This changed the poses.
+    # By default Exudyn takes no step below 1e-8 s and rounds sample times to 1e-10 s, which changed the poses.
     from engines.exudyn import TUNED
 
     shipped("exudyn")
@@ -310,7 +310,7 @@ def geared(arm: float, light: float, wheel: float, gravity: tuple[float, float])
 @pytest.mark.slow
 @pytest.mark.usefixtures("with_mjx")
 def test_a_residual_of_the_solver_is_a_warning():
-    # The default tolerance is relative to the sum of inertias. So 1e-6 kg m^2 beside 500 kg m^2 has no effect.
+    # The default tolerance is relative to the sum of inertias, so a wheel of 1e-6 kg m^2 has no effect.
     run = MJX.build(geared(500.0, 500.0, 1e-6, (-1e-3, 9e-4)), 12.0)(4, 10)
     assert [warning.startswith("ours: the solver missed the accelerations") for warning in run.warnings] == [True]
     mended = replace(MJX, settings=replace(MJX.settings, tolerance=1e-28))

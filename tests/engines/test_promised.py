@@ -123,8 +123,8 @@ BUILDS = {
     "drake cenic": UNCONSTRAINED | GROUNDED_GEARS,
 }
 SAMPLES, SPACING = 6, 0.05
-# Engine -> error that does not fall with the step. It comes from the tolerance of the solver, from the large inertia of
-# drives, or from single precision.
+# Engine -> error that does not fall with the step. Causes are the tolerance of the solver, the large inertia of drives,
+# and single precision.
 SMALL = {
     "exudyn": 1e-8,
     "box2d": 1e-4,
@@ -140,7 +140,7 @@ SMALL = {
 
 
 def span(name: str) -> float:
-    """Return the duration [s]. It is a tenth of a scene's duration, in which errors grow at most linearly, or 0.3 s."""
+    """Return a duration [s] in which errors grow at most linearly: a tenth of a scene's duration, or 0.3 s."""
     return 0.1 * scene(name).duration if name in {scene_.name for scene_ in SCENES} else SAMPLES * SPACING
 
 
@@ -165,7 +165,7 @@ CELLS = [
     for place, engine in enumerate(ENGINES)
     for number, name in enumerate(MECHANISMS)
     if name != "weld in a loop" or engine not in QUICKLY
-    if (engine.name, name) != ("rapier", "faster than any usual limit")  # It reduces velocities, see test_browser.py.
+    if (engine.name, name) != ("rapier", "faster than any usual limit")  # Rapier reduces velocities.
 ]
 
 
@@ -219,7 +219,7 @@ UNITS = [(2.0**-10, 1.0), (1.0, 1e6)]
 def test_methods_do_not_depend_on_units_of_length_and_mass(engine: Engine, name: str) -> None:
     linkage = in_units(engine, name)
     for length, mass in UNITS:
-        # A stiff spring amplifies rounding. So does a reaction, which is a change of velocity over 1e-4 s.
+        # A stiff spring amplifies rounding. Reactions are changes of velocity over 1e-4 s, which amplifies it too.
         for changed, right, allowed in zip(
             in_units(engine, name, length, mass), linkage, (1e-9, 1e-9, 1e-6), strict=True
         ):
@@ -228,12 +228,12 @@ def test_methods_do_not_depend_on_units_of_length_and_mass(engine: Engine, name:
 
 @dataclass(frozen=True)
 class Belt(Gear):
-    """A joint that no adapter knows. It couples two rotations by the ratio of two pulleys."""
+    """A joint that no adapter knows, for two rotations with the ratio of two pulleys."""
 
 
 @dataclass(frozen=True)
 class Brake(Torque):
-    """A force element that no adapter knows. It is a smoothed Coulomb torque."""
+    """A smoothed Coulomb torque, which is a force element that no adapter knows."""
 
     def on(self, first, second, first_twist, second_twist):
         rate = second_twist[..., 2] - first_twist[..., 2]

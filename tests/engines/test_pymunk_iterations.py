@@ -36,7 +36,7 @@ def test_a_load_on_a_body_that_is_driven_without_a_pin_does_not_turn_it(method):
         Pin("hook", "block", "pendulum", (0.3, 0.0), (-0.5, 0.0)),
     )
     trajectory = method.build(Mechanism((block, pendulum), joints, (0.0, -9.81)), 1e-3)(20, 10)
-    # The weight of the bar acts 0.3 m from the middle of the block. It would turn a block that is free to rotate.
+    # The weight of the bar, 0.3 m from the middle of the block, would turn a block that is free to rotate.
     assert largest(trajectory.pose[:, 0, 2]) < 1e-12
     assert largest(trajectory.pose[-1, 1, 2]) > 0.1
 
@@ -113,7 +113,7 @@ def test_impulses_grow_by_the_spectral_radius_of_the_step_if_motors_and_blades_c
     assert 0 < corrected.mean() < 1
 
     def grown(iterations: int) -> float:
-        """The growth of impulses in a step. It is measured in the last two thirds of a run with very short steps."""
+        """The growth of impulses in a step, measured in the last two thirds of a run with very short steps."""
         twist = replace(TUNED, iterations=iterations, error_bias=0.0).build(mixed, 1e-7 * mixed.time_scale)(66, 1).twist
         change = np.abs(np.diff(twist, axis=0)).max(axis=(1, 2))
         return float((change[-1] / change[20]) ** (1 / 45))

@@ -166,7 +166,7 @@ def test_a_force_on_a_body_is_read_as_constant_with_a_note():
     assert [type(force).__name__ for force in reading.mechanism.forces] == ["Force", "Torque"]
     assert any(note.element == "the force or torque that stands on body 2" for note in reading.notes)
     assert refuse_disagreement(reading) < ACCELERATION_ERROR
-    # The force moves the body by 0.5 m in 1 s. So the test detects a force that acts only in the first step.
+    # The force moves the body by 0.5 m in 1 s, so a force that acts only in the first step is detected.
     linkage, ideal = reading.model.run(10, 10), TRUTH.build(reading.mechanism, 0.1)(10, 1)
     assert np.abs(linkage.pose - ideal.pose).max() < 0.1
 
@@ -280,7 +280,7 @@ for a, b, at in (
 """
 LINE_FOLDER = Path(__file__).parents[2] / "reports" / "pages" / "your_loop" / "lines"
 CLOSE_CODE = (LINE_FOLDER / "close.txt").read_text(encoding="utf-8")
-# Earlier releases wrote these lines. They prevent drift by a position_func.
+# Earlier releases wrote these lines, in which a position_func prevents drift.
 OLD_CODE = """
 for joint in space.constraints:
     joint.error_bias = 0
@@ -314,7 +314,7 @@ def test_a_script_that_starts_half_a_step_ahead_is_read_in_the_state_before(past
     assert mechanism.pose[0] == pytest.approx([0, 25, 0], abs=1e-12)
     assert np.abs(mechanism.twist).max() < 1e-12
     truth = reference_motion(mechanism, 50, 1e-2).trajectory
-    # With default settings the error would be 0.1. Without the half step it would be 0.006.
+    # With default settings the error would be 0.1. Without the half step the error would be 0.006.
     assert measure_errors(mechanism, truth, reading.model.run(50, 10)).largest < 1e-3
 
 

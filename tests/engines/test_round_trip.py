@@ -36,8 +36,8 @@ from tests import independent
 from tests.engines.test_matrix import rod_in_a_slot
 from tests.mechanisms import ALONE
 
-# The difference is rounding times the condition number of the rows. The largest difference is 2e-13. It occurs for ten
-# four-bars in line, which are 0.05 rad from a singular position.
+# The difference is rounding times the condition number of the rows. The largest difference is 2e-13, for ten four-bars
+# in line, which are 0.05 rad from a singular position.
 ROUND_TRIP_ROUNDING = 1e-12
 # Neither engine has a joint for a skate or a roll. Readers can't recognise our constructions of these joints.
 WITHOUT_JOINT = (Skate, Roll)
@@ -203,8 +203,9 @@ def test_an_exported_model_has_the_engines_motion_and_bars_through_the_joints(na
     for _ in range(60):
         mujoco.mj_step(exported, data)
         mujoco.mj_step(model.compiled, engine_data)
-    # The difference comes from the tolerance of the solver, since the engine uses another unit of mass. It would be at
-    # least 3e-7 m if the exported plane below a blade did not have the height that is set after compilation.
+    # The difference comes from the tolerance of the solver, since the engine uses another unit of mass. The difference
+    # would be at least 3e-7 m if the exported plane below a blade did not have the height that is set after
+    # compilation.
     np.testing.assert_allclose(data.qpos, engine_data.qpos, rtol=0, atol=1e-8)
     assert bool(model.split_bodies) == (name == "in halves")
     if name in BY_CONTACT:

@@ -1,4 +1,4 @@
-"""Tests of fast contacts of rolling pairs and of motions of spanning trees. Several adapters use both."""
+"""Tests of fast contacts of rolling pairs and of motions of spanning trees, which several adapters use."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def as_complex(vectors: np.ndarray) -> np.ndarray:
 
 
 def far_and_back(rolling: Rolling) -> np.ndarray:
-    """Rotations [rad] in both directions. They have jumps and reach far beyond the first cells of a table."""
+    """Rotations [rad] in both directions, with jumps, that reach far beyond the first cells of a table."""
     theta = rolling.theta + np.concatenate([np.linspace(-9.0, 9.0, 203), [7.3, -2.0, 4.0]])
     low, high = rolling.limits
     return theta[(low < theta) & (theta < high)]
