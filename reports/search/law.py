@@ -134,7 +134,7 @@ def instant_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkippe
 
 
 def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDeclared:
-    """Instants of the first steps. Only the start is used with a roll, or if a body or the direction of a constraint
+    """Instants of the first steps. Only the start is used if the mechanism has a roll, or if a body or a constraint
     turns by more than a radian in a step.
 
     The equations of a roll assume a closed gap, but the gap is open after a step.

@@ -64,8 +64,7 @@ def judge_motion(mechanism: Mechanism) -> Trajectory:
 
 
 def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """The error at the finest step and the tolerance, for "motion", "reactions" and, if the run has an error estimate,
-    "estimate".
+    """Check -> (error at the finest step, tolerance). The check "estimate" needs a run with an error estimate.
 
     Raises Fault if a run diverges without a warning.
     """

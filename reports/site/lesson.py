@@ -127,7 +127,10 @@ def part_of(text: str) -> Part:
 
 
 def exercise_of(text: str) -> Exercise:
-    """Parse "heading: `answer` [unit]", a text and a quotation with the solution. Raises ValueError for other texts."""
+    """Parse the heading, the answer's name and unit, the text and the quoted solution of an exercise.
+
+    Raises ValueError for other texts.
+    """
     match = re.fullmatch(r"(.+): `(\w+)` \[(.+)\]\n\n(.+?)\n\n((?:>.*\n?)+)", text.strip(), re.DOTALL)
     if match is None:
         raise ValueError(f"{text.partition(chr(10))[0]!r}: an exercise has a heading, an answer, a unit and a solution")

@@ -83,7 +83,7 @@ def test_an_invalid_linkage_is_refused_in_a_sentence(points, bars, ground, sente
 def test_a_comparison_has_the_run_of_the_engine_and_the_exact_motion(monkeypatch):
     scene = FreeFourBar()
     result = planar_crosscheck.compare(scene.mechanism(), "pymunk tuned", dt=1e-3, duration=0.5)
-    assert len(result.run.t) == 251  # the number is near SAMPLES, so that a whole number of steps lies between samples
+    assert len(result.run.t) == 251  # not exactly SAMPLES, since there is a whole number of steps between samples
     assert planar_crosscheck.compare(scene.mechanism(), "pymunk", 0.1, 0.1).title == "pymunk default at 100 ms"
     truth = scene.motion(result.run.t)
     assert np.abs(result.truth.pose - truth.pose).max() < 1e-9

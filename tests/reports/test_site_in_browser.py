@@ -245,7 +245,7 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
     page = opened(f"lessons/{lesson}.html", viewport=TALL)
     box = page.locator(".lot").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    for index in range(41):  # an ellipse, drawn clockwise
+    for index in range(41):  # an ellipse that is drawn clockwise
         page.mouse.move(x + 80 * np.cos(index * np.pi / 20), y + 30 * np.sin(index * np.pi / 20))
         if index == 0:
             page.mouse.down()

@@ -34,7 +34,8 @@ SAMPLES_PER_REVOLUTION = 50
 
 @dataclass(frozen=True)
 class PrintedRates(Task):
-    """RK45 integrates equations (18.70) and (18.71). `tolerance` is relative, and 1000 times the absolute tolerance."""
+    """RK45 integrates equations (18.70) and (18.71). `tolerance` is the relative tolerance; the absolute tolerance is a
+    thousandth of it."""
 
     revolutions: int
     tolerance: float
