@@ -20,7 +20,7 @@ COMPILED_RELEASE, COMPILED_DIGEST = compiled_from(COMPILED.read_text("utf-8"))
 LIVES = {f"{lesson.name}, {live.word}": live for lesson in LESSONS for live in lesson.scenes}
 # Largest relative difference from Python's pymunk. Polygonal gears amplify rounding; the measured difference is 3e-7.
 APART = {"gears, two gears": 1e-5}
-# Program for Node that runs each method of pymunk of the page. Node gets the objects `window` and `document` of a
+# Program for Node that runs each of the page's methods of pymunk. Node gets the objects `window` and `document` of a
 # browser.
 NODE = """
 globalThis.window = globalThis;

@@ -260,7 +260,7 @@ def _draw_predictions(panel: Axes, columns: Sequence[StoredColumn], stability_ma
     fastest = np.array([2 / stability_map.frequency(stability_map.make(value)) for value in values])
     if np.any((fastest > low) & (fastest < high)):
         line("fastest", values, fastest)
-    # If every step or no step tears a joint, the curve leaves the panel at the bottom or at the top.
+    # The curve leaves the panel at the bottom if every step tears a joint, and at the top if no step does.
     tearing = [math.inf if math.isnan(column.gives) else column.gives for column in columns]
     tearing = np.clip(tearing, low / 2, high * 2)
     if np.any((tearing > low) & (tearing < high)) or (tearing.min() < low and tearing.max() > high):

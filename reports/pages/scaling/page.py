@@ -198,8 +198,8 @@ CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING
 SWEEPS_OVER_SQUARE = -4 * log(RESIDUAL) / pi**2
 CAPPED = ceil(sqrt(ITERATION_LIMIT / SWEEPS_OVER_SQUARE))
 
-# Method -> smallest and largest size of a fit. Below CAPPED links, the number of iterations of pymunk tuned grows with
-# the size.
+# Method -> smallest and largest size of a fit. Below CAPPED links, "pymunk tuned" has a number of iterations that grows
+# with the size.
 # At COSTLY_SIZES these methods make few steps, and early steps have more iterations.
 SIZES_OF_FIT: Mapping[str, tuple[float, float]] = {
     "pymunk tuned": (CAPPED, max(LARGE_SIZES)),
