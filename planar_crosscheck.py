@@ -146,9 +146,9 @@ def search(
     workers: int | None = None,
     results: str | Path = "crosscheck-results",
 ) -> list[CaseResult]:
-    """Check random mechanisms in the variants of an engine, or of all if None, like `crosscheck search`.
+    """Check random mechanisms like `crosscheck search`, in the variants of one engine or of all engines.
 
-    If the seed is None, it follows from the last commit. No case starts after `seconds`. The cases and the reduced
+    The default seed follows from the last commit. No case starts after `seconds`. The cases and the reduced
     findings are stored in the folder `results`. Raises ValueError.
     """
     from reports.cli.options import SEARCH

@@ -44,7 +44,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser, args: list[str]) -> None:
-    """With `-m crosscheck`, add the options and the tests of the grid. Tests that the user names replace its tests."""
+    """With `-m crosscheck`, add the options of the grid, and the tests of the grid unless the user names tests."""
     expression = early_config.known_args_namespace.markexpr or ""
     if not re.search(r"\bcrosscheck\b", expression) or re.search(r"\bnot\s+crosscheck\b", expression):
         return
@@ -94,7 +94,7 @@ class Crosscheck:
 
 
 def _failing(call: Callable[[], Any]) -> Any:
-    """Return the result of the call. If it raises, fail the test with the message of the exception."""
+    """Return the result of the call. An exception fails the test with the message of the exception."""
     message = ""
     try:
         return call()

@@ -1,4 +1,5 @@
-"""The program `crosscheck`, also `python -m reports`. After an error it prints one line and returns an exit status.
+"""The program `crosscheck`, also `python -m reports`. After an error the program prints one line and returns an exit
+status.
 
 Slow modules are imported only after the handler of Ctrl-C is set.
 """

@@ -16,7 +16,7 @@ from reports.check.judging import accelerations
 Array = NDArray[np.float64]
 NEARLY_SINGULAR = 1e-2  # A position is near-singular if the smallest singular value is below this share of the largest.
 RANK_TOLERANCE = 1e-9  # A singular value below this share of the largest one counts as zero.
-SVD_NUMBERS = 2e7  # Limit of the number of matrix elements, summed over all samples.
+SVD_NUMBERS = 2e7  # Largest number of matrix elements in all samples together.
 DIFFERENCE_STEP = 1e-6  # Step of finite differences, relative to the length and the time scale of the mechanism.
 MOST_DIRECTIONS = 60  # With more free directions the eigenvalues are not computed.
 
@@ -30,14 +30,14 @@ class Facts:
     freedoms: tuple[int, int]  # Degrees of freedom of the configuration, and of the velocities.
     redundant: int
     undetermined: tuple[str, ...]  # Rows whose reactions are not unique.
-    singular: tuple[tuple[float, float], ...]  # (time [s], ratio of the smallest to the largest singular value)
+    singular: tuple[tuple[float, float], ...]  # (time [s], ratio of the smallest to the largest singular value).
     dead_centres: tuple[tuple[float, str], ...]  # (time [s], body).
     fastest_rotation: float  # rad/s.
     stiffest_mode: float  # Largest absolute eigenvalue at the start [1/s].
     length: float  # m.
     time: float  # s.
     locked: bool = False  # Whether the joints leave no freedom and prescribe no motion.
-    locking_welds: tuple[str, ...] = ()  # Welds of a locked mechanism. With hinges instead it would have a freedom.
+    locking_welds: tuple[str, ...] = ()  # Welds of a locked mechanism that would have a freedom with hinges.
 
 
 def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:

@@ -1,4 +1,4 @@
-"""The ideal motion in a new installation. It is computed in numpy if this is faster than compiling the judge's code.
+"""The ideal motion in a new installation. Numpy computes the motion if this is faster than compiling the judge's code.
 
 The judge's machine code takes COMPILE_SECONDS of CPU time. A short motion of a few bodies takes a few seconds in numpy.
 So numpy computes the first motions. The code is compiled as soon as the times of all motions in numpy, including

@@ -80,7 +80,8 @@ ALONG_CURVE_TOLERANCE = 1e-12  # Relative error of a step along the configuratio
 LOOSER_CURVE_TOLERANCE = 1e-11  # Tolerance of a second run along the curve. The difference estimates the error.
 DISTURBANCE = 1e-7  # Initial disturbance relative to length and speed, small enough for linear growth.
 LINEAR_LIMIT = 1e-2  # A disturbance above this size, relative to length and speed, does not grow linearly.
-DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size). Chaos means that both grow exponentially.
+# (seed, size) of two disturbances. A motion is chaotic if both disturbances grow exponentially.
+DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))
 REMAINING_SHARE = 1e-3  # If projection leaves less than this share of a disturbance, the joints do not allow it.
 # A disturbance of a regular motion grows about linearly in time. Growth that is faster by this factor is exponential.
 EXPONENTIAL_GROWTH = 100.0
@@ -172,7 +173,7 @@ def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> 
 def _first_exponential(growth: Array, expected: Array, size: float) -> int:
     """Index of the first sample with more than the expected growth, or the number of samples without such a sample.
 
-    If the growth is at most the expected one at the end, it counts only if the disturbance has exceeded LINEAR_LIMIT.
+    Growth that has receded at the end counts only if the disturbance has exceeded LINEAR_LIMIT.
     """
     beyond = growth > expected
     stays = beyond[-1] or np.any(beyond & (growth * size > LINEAR_LIMIT))
@@ -221,7 +222,7 @@ def _growth(
     return np.where(apart_by > size(looser), apart_by, apart_by[0]) / apart_by[0]
 
 
-START_AGREEMENT = 1e-6  # Relative to the largest acceleration. Badly scaled masses amplify rounding.
+START_AGREEMENT = 1e-6  # Largest difference of initial accelerations, relative to the largest acceleration.
 # Speeds and forces below this share of the mechanism's speed or largest force count as zero.
 ZERO_SHARE = 1e-9
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
@@ -253,8 +254,8 @@ class Errors:
 def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
     """Errors of a run at the samples of the reference motion.
 
-    jumps: whether the joints do not allow the initial velocities. The ideal motion changes them by an impulse at t = 0,
-    but a run needs one or more steps. So forces and energy at the first two samples are not compared.
+    jumps: whether the joints do not allow the initial velocities. The ideal motion changes these velocities by an
+    impulse at t = 0, but a run needs one or more steps. So forces and energy at the first two samples are not compared.
     """
     difference = run.pose - truth.pose
     angle = np.abs(difference[..., 2]).max(axis=1)
@@ -328,7 +329,7 @@ def refuse_disagreement(reading: Reading) -> float:
     """Relative difference of the accelerations at t = 0 between the engine and the judge.
 
     The judge uses the declared softness of the engine. Raises Unsupported if the difference exceeds START_AGREEMENT.
-    The message names an element of the model if the accelerations agree without it.
+    The message names an element of the model if the accelerations agree without this element.
     """
     mechanism, model = reading.mechanism, reading.model
     give = model.regularisation(np.zeros(mechanism.row_count), mechanism.pose) if model.has_soft_joints else None

@@ -104,7 +104,7 @@ def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
 
 
 def _acceleration(mechanism: Mechanism, pose: Array, twist: Array, along: Array) -> Array:
-    """Acceleration (bodies, 3). Forces determine its part along the curve, and the rows' bias determines the rest."""
+    """Acceleration (bodies, 3). Forces determine the component along the curve, and the rows' bias the rest."""
     rows = mechanism.joint_rows.dense(pose)
     bias = mechanism.bias(pose, twist)
     root = np.sqrt(mechanism.inertias.reshape(-1))

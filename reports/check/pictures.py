@@ -27,7 +27,7 @@ BAR_STYLE: dict[str, Any] = {"marker": "o", "solid_capstyle": "round"}
 
 @dataclass(frozen=True)
 class Pose:
-    bars: Lines  # For each body a polygon through its joints.
+    bars: Lines  # For each body, a polygon through its joints.
     links: Lines  # Rods and springs.
     rails: Lines  # Guides of slides on the ground.
 

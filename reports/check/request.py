@@ -66,7 +66,7 @@ class CheckRequest:
 
 @dataclass(frozen=True, repr=False)
 class CheckReport:
-    """The report of a check in all its forms."""
+    """The report of a check as text, pictures and data."""
 
     request: CheckRequest
     verdict: str
@@ -102,7 +102,7 @@ class Refused:
 
 def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused:
     """Run the check in this process. model: a model object that replaces the file."""
-    # These imports are here since a command that only makes requests does not need them.
+    # A command that only makes requests does not need these imports.
     from engines import Unsupported
     from engines.importers import read_object
     from engines.reading import ReadingTerms

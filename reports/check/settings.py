@@ -13,10 +13,10 @@ from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
 from reports.check.judging import Errors, measure_errors
 
-MAX_RUN_TIME = 1.0  # Longest CPU time of one run [s]. Steps that need more are left out.
+MAX_RUN_TIME = 1.0  # Longest CPU time of one run [s]. Steps that need more time are left out.
 HELPFUL_RATIO = 0.75  # A smaller step is helpful if it reduces the error below this share of the previous error.
 SATURATED_ERROR = 1.0  # The causes of a larger error [rad, or lengths of the mechanism] can't be separated.
-# A saturated error is constant if its relative change is smaller. Two coarse steps seldom agree so well by chance.
+# A saturated error counts as constant if its relative change is smaller. Errors of coarse steps seldom agree by chance.
 SATURATED_CHANGE = 0.01
 SMALLER_STEPS = 4  # Number of smaller steps with the user's settings, which separate the causes of the error.
 
@@ -119,7 +119,7 @@ def _quick_choice(changes: list[Change]) -> list[int]:
 
 
 def _has_plateaued(table: list[SettingRun]) -> bool:
-    """Whether the last two reductions of the step were not helpful: see HELPFUL_RATIO and SATURATED_CHANGE."""
+    """Whether the last two reductions of the step did not reduce the error, by HELPFUL_RATIO and SATURATED_CHANGE."""
 
     def stays(before: float, after: float) -> bool:
         return (

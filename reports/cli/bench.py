@@ -100,13 +100,13 @@ def _print_judge() -> None:
     scenes = dict.fromkeys(
         cell.scene for cell in choose_cells(choice.scenes, choice.engines, choice.known.pages, full=True)
     )
-    truths = measure_truths(scenes)  # First, since some motions are cached.
+    truths = measure_truths(scenes)  # before other measurements, since some motions are cached
     total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
     _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
 
 
 def _print_worlds(counts: Sequence[str], device: str | None) -> None:
-    """Print steps per second; the counts of worlds are those of the benchmark if none is given."""
+    """Print steps per second. By default the numbers of worlds are those of the benchmark."""
     choose_device(device)
     try:
         numbers = tuple(map(int, counts)) or WORLD_COUNTS

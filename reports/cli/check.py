@@ -77,7 +77,7 @@ def check(
         bool, typer.Option("--force", help="Let --apply replace a file that is there, even the model.")
     ] = False,
 ) -> None:
-    """Check a model of your own against ideal joints: how wrong your settings are, why, and which are enough.
+    """Check a model of your own against ideal joints: how wrong your settings are, why, and which ones suffice.
 
     The exit status is 1 if the model misses the given tolerance.
     """
@@ -183,7 +183,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
 
 
 class _Progress:
-    """Prints the progress. On a terminal the line is overwritten. A file or a pipe gets a line for each stage."""
+    """Prints the progress, which overwrites one line of a terminal. A file or a pipe gets a line for each stage."""
 
     def __init__(self, notes: Path) -> None:
         self.notes, self._last, self._begin = notes, "", monotonic()

@@ -114,7 +114,7 @@ class Question:
     named: Named
     index: int  # Index of the engine in `named.engines()`.
     check: str  # Name of the check.
-    notes: str  # A folder. Its file with the name of the check contains the number of the current mechanism.
+    notes: str  # A folder. The file with the name of the check contains the number of the current mechanism.
 
 
 @cache

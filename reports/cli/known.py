@@ -188,7 +188,7 @@ def one_scene(word: str, settings: Sequence[str] = ()) -> tuple[Registry, Scene]
 def engines_named(
     word: str | None, variant: str | None, known: Sequence[Engine], folder: Path | None = None
 ) -> tuple[Engine, ...]:
-    """The engines with a name among `known`, or of a reference, with this variant. Raises BadInput."""
+    """The engines with this variant and this name or reference. Raises BadInput."""
     if word is None or not is_reference(word):
         return choose_engines(word, variant, known)
     try:

@@ -53,7 +53,7 @@ DeviceName = Annotated[
 
 
 def choose_device(device: str | None) -> None:
-    """Set the device of engines on a device for this process and its workers; raises BadInput for an unknown one."""
+    """Set the device of engines for this process and its workers. Raises BadInput for an unknown device."""
     if device is not None:
         if device not in DEVICES:
             raise BadInput(f"--device {device}: it must be cpu or cuda")

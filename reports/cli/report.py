@@ -195,7 +195,7 @@ def _pages(references: tuple[str, ...]) -> dict[str, Page]:
 
 
 def drawn(material: Materials, references: Iterable[str], command: str, order: Path) -> dict[str, dict[str, str]]:
-    """Name of a page -> its files. Pages that workers could not render are missing.
+    """Name of a page -> files of the page. Pages that workers could not render are missing.
 
     references: references in the store. order: folder of an earlier report, whose sizes determine the order.
     """

@@ -87,7 +87,7 @@ def run(
 
 @dataclass(frozen=True)
 class Selection:
-    """The options of `crosscheck run` that choose cells. The properties raise BadInput."""
+    """The options of `crosscheck run` that choose cells. All properties may raise BadInput."""
 
     scenes: tuple[str, ...] = ()  # Names of scenes or pages, or references. An empty tuple means all scenes.
     engine: str | None = None

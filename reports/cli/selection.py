@@ -51,7 +51,7 @@ def choose_engines(engine: str | None, variant: str | None, engines: Sequence[En
 
 
 def steps_per_sample(scene: Scene, step: float) -> int:
-    """The number of steps of `step` [s] between two samples of a scene. Raises BadInput unless it is an integer."""
+    """The number of steps of `step` [s] between two samples. Raises BadInput unless the number is an integer."""
     if not (math.isfinite(step) and step > 0):
         raise BadInput(f"step is {step!r} s; it must be a finite time greater than zero")
     ratio = scene.spacing / step

@@ -1,4 +1,4 @@
-"""`crosscheck shapes MOTION.csv` writes two shapes. One rolls on the other and thus generates the motion."""
+"""`crosscheck shapes MOTION.csv` writes two shapes that generate the motion when one rolls on the other."""
 
 from __future__ import annotations
 

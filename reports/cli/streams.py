@@ -38,7 +38,7 @@ def open_streams() -> None:
 
 
 def leave_streams() -> None:
-    """Discard output that can't be written. Python would print an error message about it when it ends."""
+    """Discard output that can't be written. At its end Python would print an error message about such output."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -47,7 +47,7 @@ class Terminal(Console):
             super().print(*objects, **options)
 
     def say(self, sentence: str) -> None:
-        """Print a sentence that is no result. Brackets in it are not markup, since file names may contain them."""
+        """Print a sentence that is no result, without markup, since file names may contain brackets."""
         self.print(visible(sentence), markup=False, highlight=False, soft_wrap=True)
 
     def tell(self, sentence: str) -> None:
@@ -177,7 +177,8 @@ def interruptible(
 def progress(
     console: Console, total: int, check: Callable[[], None], unit: str = "cells"
 ) -> Iterator[tuple[Callable[..., None], Callable[[list[Any]], None]]]:
-    """(done, watch). done(result, many=1) counts results. watch(items) shows the running items. Both call `check`.
+    """(done, watch). done(result, many=1) counts results. watch(items) shows the running items. Both functions call
+    `check`.
 
     A terminal shows a bar. A file or a pipe gets a line every PULSE seconds.
     """

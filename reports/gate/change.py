@@ -1,9 +1,9 @@
 """The regression gate compares each row with a baseline. The baseline is the errors.csv of an earlier run.
 
 The effect of rounding is measured in runs whose masses, inertias, gravity and points are changed by one rounding. A
-change of the initial state alone does not suffice, since a prescribed or projected motion does not depend on its last
-bit. The bodies keep their order. Another order would change MuJoCo's tree and pymunk's solver iterations, and with them
-the errors.
+change of the initial state alone does not suffice, since a prescribed or projected motion does not depend on the last
+bit of this state. The bodies keep their order. Another order would change MuJoCo's tree and pymunk's solver iterations,
+and so the errors.
 """
 
 from __future__ import annotations
@@ -174,7 +174,7 @@ class Altered(EngineWrapper):
 
 @dataclass(frozen=True)
 class Nudge:
-    """A change of masses, inertias and vectors of a mechanism by -1, 0 or 1 rounding. The seed determines which.
+    """A random change of masses, inertias and vectors of a mechanism by -1, 0 or 1 rounding.
 
     Scalars of joints and forces, such as a gear's ratio or an angle, are not changed. Engines treat some values, such
     as 1, specially. Zeros remain zero.
@@ -210,7 +210,7 @@ def _rounded(values: tuple[Any, ...], random: np.random.Generator) -> Any:
 
 
 def nudged_cells(cell: Cell) -> tuple[Cell, ...]:
-    """A cell for each seed. Its mechanism is changed by one rounding."""
+    """For each seed, a cell whose mechanism is changed by one rounding."""
     return tuple(replace(cell, engine=Altered(cell.engine, Nudge(seed))) for seed in SEEDS)
 
 

@@ -1,8 +1,9 @@
 """The judge of the gate: a mechanism with ideal or regularised joints, integrated by textbook methods.
 
 The judge uses the compiled rows and steps of `engines.lagrange`. Without numba the judge uses numpy and is a hundred
-times slower. `tests/engines/test_judge.py` compares it with the exact motions of scenes and with the sag of a spring.
-`tests/engines/test_judge_witness.py` compares it with an independent implementation in random mechanisms.
+times slower. `tests/engines/test_judge.py` compares the judge with the exact motions of scenes and with the sag of a
+spring. `tests/engines/test_judge_witness.py` compares the judge with an independent implementation in random
+mechanisms.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ Array = NDArray[np.float64]
 QUANTITY_NAMES = tuple(quantity.name for quantity in QUANTITIES)
 
 PARTS = 10  # Number of intervals of `refined` between two samples.
-SAME = 1e-6  # `refined` ends when a third of the step changes the result by less. With 1e-7 errors change by < 10 %.
+# Largest change by a third of the step in `refined`. With 1e-7 instead, errors change by less than 10 %.
+SAME = 1e-6
 MOST_TRIED = 200_000  # Largest number of steps in `refined`, which take half a minute for 60 rows.
 
 TABLEAUS: dict[int, Tableau] = {
@@ -51,7 +53,7 @@ TABLEAUS: dict[int, Tableau] = {
 def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
     """The mask (rows,) of the regularised rows. A drive is regularised only if its row has a compliance.
 
-    A drive without a compliance prescribes only the rate. No spring acts on its angle.
+    A drive without a compliance prescribes only the rate, and no spring acts on the angle.
     """
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
@@ -101,7 +103,7 @@ def _compiled(
     """The motion by compiled steps. The result is None without numba, for dependent ideal rows, and after divergence.
 
     Regularised rows may be dependent, since their compliances make the system regular. Compiled steps do not project
-    them.
+    regularised joints.
     """
     machine = _machine(mechanism, soft)
     if machine is None or (project if soft is not None else machine.has_dependent_rows):
@@ -207,7 +209,7 @@ def errors(
 
 
 def errors_as_soft(scene: Scene, soft: Regularisation) -> Mapping[str, float]:
-    """Quantity -> largest error of `refined` with this regularisation. Errors are infinite if it returns None."""
+    """Quantity -> largest error of `refined` with this regularisation, or infinity if `refined` returns None."""
     return _largest_errors(scene, lambda: refined(scene.mechanism(), _samples(scene), scene.spacing, soft))
 
 

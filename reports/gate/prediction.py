@@ -1,7 +1,7 @@
 """Predicted discretisation and regularisation errors of a scene, computed by the reference solver of the gate.
 
-A discretisation error A (h / tau)^p has two unknowns, the amplitude A and the time scale tau. A run of order 2 and a
-run of order 4 determine both. With A and tau, the error of any order p at any step h is known. The error of regularised
+A discretisation error A (h / tau)^p has two unknowns, the amplitude A and the time scale tau. Runs of order 2 and of
+order 4 determine A and tau. With A and tau, the error of any order p at any step h is known. The error of regularised
 joints is proportional to their compliance, so one run predicts the error for all compliances.
 """
 
@@ -31,13 +31,13 @@ from reports.model.tasks import Answer, Task, Values
 SoftKind = tuple[tuple[bool, ...], bool]
 
 # The judge's runs have MuJoCo's default regularisation with a smaller compliance. Errors are proportional to the
-# compliance and to 1 / stiffness [s^2]. For rows without a gap they are proportional to 1 / damping [s].
+# compliance and to 1 / stiffness [s^2]. For rows without a gap the errors are proportional to 1 / damping [s].
 STIFFNESS, DAMPING, COMPLIANCE = 1 / 0.02**2, 2 / 0.02, 0.01
 
 REFINEMENTS = (
     1,
     3,
-)  # Steps per sample of the judge. The first number is used with which the error of order 2 is within REACH.
+)  # Steps per sample of the judge. The first number is used for which the error of order 2 is at most REACH.
 REACH = 0.1  # rad.
 MOST_STEPS = 20_000  # Largest number of steps of the judge. In longer scenes the method's coarser steps give the bound.
 DIFFERENCES = 1000  # Number of intervals for finite differences of the true motion.
@@ -106,7 +106,7 @@ class Prediction:
         return scaled_softness_error(self.soft, quantity, softness, self.holonomic)
 
     def gap_closing_error(self, quantity: str, gap: float, softness: Regularisation | None) -> float:
-        """The error while a spring closes a gap [m] from discretisation. The velocity is gap * damping."""
+        """The error while a spring closes a gap [m] from discretisation with the velocity gap * damping."""
         if softness is None or not softness.complete or math.isnan(gap):
             return 0.0
         if quantity == "reaction":
@@ -150,8 +150,8 @@ def scaled_softness_error(
 ) -> float:
     """The error that a regularisation causes, scaled from the judge's errors `soft`.
 
-    holonomic: mask of the rows that constrain positions. Their gap depends on the stiffness. The slip of other rows
-    depends on the damping.
+    holonomic: mask of the rows that constrain positions. The gap of these rows depends on the stiffness, and the slip
+    of other rows on the damping.
     """
     if softness is None:
         return 0.0
@@ -330,7 +330,7 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
 def all_tasks(page: Page) -> tuple[Task, ...]:
     """The distinct tasks of a page: for its text, for its experiments, and the judge's runs for its engines.
 
-    The judge's runs follow from the engines' regularisations, so this builds models for all scenes of the page.
+    The judge's runs follow from the engines' regularisations, so models for all scenes of the page are built.
     """
     declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
     return tuple(dict.fromkeys([*described_tasks(page), *declared]))

@@ -24,8 +24,8 @@ from reports.model.page import Page
 from reports.model.quantities import QUANTITY
 
 # The observed order may be lower than the declared order by this difference. At an error of 0.1 rad the next power of
-# the step is a tenth of the leading term. At a step half a decade smaller it is a thirtieth. The next power changes the
-# observed order by up to 0.1. A last point slightly above rounding changes the order by a similar amount.
+# the step is a tenth of the leading term. At a step half a decade smaller the next power is a thirtieth. The next power
+# changes the observed order by up to 0.1. A last point slightly above rounding changes the order by a similar amount.
 BELOW = 0.4
 # The observed order may be higher than the declared order by this difference. A difference below 1 ensures that a
 # declared order that is too low by 1 fails.
@@ -66,9 +66,9 @@ ROOM = 20.0
 # the step, and for a largest error at another sample. With a factor below 10^0.5, an error that is equal at the two
 # finest steps fails even at first order.
 ROOM_OWN = 2.5
-# This factor replaces ROOM_OWN in a prescribed motion. There errors do not propagate, and the largest error is at the
-# same time for every step. The factor allows for the next power of the step, which contributes 6 % in the driven
-# four-bar at the coarsest step.
+# This factor replaces ROOM_OWN in a prescribed motion. In such a motion errors do not propagate, and the largest error
+# is at the same time for every step. The factor allows for the next power of the step, which contributes 6 % in the
+# driven four-bar at the coarsest step.
 ROOM_PRESCRIBED = 1.25
 # Number of coarser steps that are needed to predict an error. At a single step two errors may cancel.
 ENOUGH = 2
@@ -120,9 +120,9 @@ def theory(
 ) -> tuple[Check, ...]:
     """The checks of the outcome and of each quantity of a row.
 
-    coarser: rows of the same method at larger steps. Their errors, scaled by the declared order, give a second bound.
-    This bound needs ENOUGH rows, or one row if the judge's run has diverged. Without a declared order the bound follows
-    from the differences between the errors at the method's steps.
+    coarser: rows of the same method at larger steps. The errors of these rows, scaled by the declared order, give a
+    second bound. This bound needs ENOUGH rows, or one row if the judge's run has diverged. Without a declared order the
+    bound follows from the differences between the errors at the method's steps.
     as_soft: the judge's errors with this regularisation, if errors are not proportional to the compliance. NaN
     fails unless the engine declares it. A check that does not apply has an infinite bound and gives the reason.
     """

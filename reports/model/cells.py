@@ -41,7 +41,7 @@ SAME_STEP = 0.01
 # Variants that are shown in the overview and in charts.
 FEATURED = ("default", "tuned", "extended", "euler projection", "rk4 projection")
 MOST_VARIANTS = 3  # Number of variants that are shown for an engine without a variant in FEATURED.
-# Printed form of a step -> the engine whose users choose this step. Other engines in this table do not run it.
+# Printed form of a step -> the engine whose users choose this step. Other engines in this table do not run the step.
 HABITS = {"1/60 s": "pymunk", "2 ms": "mujoco"}
 OWN_VARIANTS = (
     "extended",
@@ -99,7 +99,7 @@ class Cell(Valid):
         return digest("\0".join(parts), LONG)
 
 
-_fingerprint = lru_cache(maxsize=4096)(fingerprint)  # The cells of a scene in an engine share it.
+_fingerprint = lru_cache(maxsize=4096)(fingerprint)  # The cells of a scene in an engine share a fingerprint.
 
 
 def estimated_cost(cell: Cell) -> float:
@@ -166,7 +166,7 @@ def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool
 
 
 def too_much(cell: Cell, cost_limit: float = COST_LIMIT, divided: float = DIVIDED) -> str:
-    """The reason why a sweep leaves out a cell with a finer step than the coarsest one, or an empty text."""
+    """The reason why a sweep leaves out a cell, or an empty text. The coarsest step is never left out."""
     cost = estimated_cost(cell)
     most = max(cost_limit, COST_LIMIT) if cell.every <= max(QUICK) else cost_limit
     if cost > most:

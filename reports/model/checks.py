@@ -10,11 +10,11 @@ from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES
 
 CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), "order")
-CHANGE = "change"  # The check against a baseline. No known deviation excuses its failure.
+CHANGE = "change"  # The check against a baseline, whose failure no known deviation excuses.
 BEGINNINGS = ("upstream:", "by design:", "ours:")
 WORSE_DEVIATION = 2.0  # A deviation fails if it exceeds the known deviation by this factor.
 BACK = 0.5  # A known deviation below this share of the bound no longer occurs. This fails too.
-ROUNDED = 10.0  # The factor for amplified rounding. Another processor changed such deviations by 2 and by 1/17.
+ROUNDED = 10.0  # The factor for amplified rounding. Another processor changed such deviations by factors of 2 and 1/17.
 
 
 @dataclass(frozen=True)

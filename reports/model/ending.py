@@ -22,7 +22,7 @@ STATUSES = (
 
 
 class Ending(Exception):
-    """An exception that ends the program with `status`. Its message is printed as one line on stderr."""
+    """An exception that ends the program with `status`. The message is printed as one line on stderr."""
 
     status: ClassVar[int]
 

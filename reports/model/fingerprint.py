@@ -1,4 +1,4 @@
-"""The cache key of results is a digest of the source files and installed versions that affect them.
+"""The cache key of a result is a digest of the source files and installed versions that affect the result.
 
 A row depends on all sources in MEASURING. The answer to a task depends on all sources in OURS. An installed module of a
 third party is identified by its version, and another module by the files of its package or folder.
@@ -37,7 +37,7 @@ def digest(content: str | bytes, digits: int = USUAL) -> str:
 
 
 def fingerprint(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
-    """The digest for results of these scenes, engines or tasks. folders: folders of this suite that affect them."""
+    """The digest for results of these values. folders: folders of this suite that affect the results."""
     return digest(repr(versions_of(*values, folders=folders)), LONG)
 
 

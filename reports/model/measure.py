@@ -87,7 +87,7 @@ class Measurement:
     own_rows: int = 0
     own_freedoms: int = 0
     cpu: float = NAN  # CPU seconds of stepping per simulated second.
-    runs: int = 0  # Number of runs; `cpu` is the minimum of their times.
+    runs: int = 0  # Number of runs, whose shortest time is `cpu`.
     build: float = NAN
     limit: float = NAN  # Limit [CPU seconds] at which a cell timed out.
 
@@ -144,7 +144,7 @@ def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
 
 @lru_cache(maxsize=128)
 def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Trajectory:
-    """The cached motion. The name of its file is a digest of everything that affects it, so it is never stale."""
+    """The cached motion. The file is never stale, since its name is a digest of everything that affects the motion."""
     if folder is None or not folder.is_dir():
         return freeze(scene.motion(np.frombuffer(instants)))
     file = folder / f"{digest(name.encode() + instants, LONG)}.npz"

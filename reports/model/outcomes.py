@@ -98,7 +98,7 @@ class Loss:
 
 
 # These signals are sent to a process by a user, a batch system, or the kernel if memory is short. Other signals that
-# end a process are caused by its code. Windows defines only few of these names.
+# end a process are caused by the code of the process. Windows defines only few of these names.
 FROM_OUTSIDE = {
     getattr(signal, name)
     for name in ("SIGKILL", "SIGTERM", "SIGHUP", "SIGINT", "SIGQUIT", "SIGXCPU", "SIGXFSZ")
@@ -138,7 +138,7 @@ def failure(error: BaseException) -> Loss:
 
 
 def out_of_time(limit: float, wall: float | None = None) -> Loss:
-    """The result of a cell that exceeds its CPU time [s]. wall: the wall time [s] if the cell exceeds this instead."""
+    """The result of a cell that exceeds its CPU time [s], or, if `wall` is given, this wall time [s]."""
     if wall is None:
         return Loss(Outcome.TIMED_OUT, f"did not end within {limit:g} s of CPU time")
     return Loss(Outcome.TIMED_OUT, f"did not end within {wall:g} s, and used less than {limit:g} s of CPU time")

@@ -43,7 +43,7 @@ class Failure:
     cells: tuple[Cell, ...] = ()  # Cells with the purpose "failure".
     observations: Callable[[Material], Sequence[Observation]] | None = None  # Uses answers.
     remark: str = ""  # Text about the outcomes.
-    columns: tuple[str, ...] = ()  # Quantities with printed errors. If empty, a grid of angle errors is printed.
+    columns: tuple[str, ...] = ()  # Quantities with printed errors. The default is a grid of angle errors.
     tasks: tuple[Task, ...] = ()
     context: Callable[[Material], Mapping[str, Any]] = no_context
     claims: tuple[str, ...] = ()  # Expressions that are true if the remark is true (`reports.pages.claims`).
@@ -144,5 +144,5 @@ class Page:
         return tuple(engine for engine in self.engines if self.compared(scene, engine))
 
     def extra_cells(self) -> tuple[Cell, ...]:
-        """The cells of the failures and the cells in `cells`. The grid does not contain them."""
+        """The cells of the failures and the cells in `cells`, which the grid does not contain."""
         return (*(cell for failure in self.failures for cell in failure.cells), *self.cells)

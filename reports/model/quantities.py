@@ -24,7 +24,7 @@ class Quantity:
     unit: str
     rounding: float  # An error below this value is only rounding.
     check: str  # Name of the check in the gate of theory.
-    needs_truth: bool = True  # Whether the error needs the exact motion. Constraint violations do not.
+    needs_truth: bool = True  # Whether the error needs the exact motion, unlike constraint violations.
     is_of_joints: bool = False  # Whether tables of scenes show this quantity in addition to the quantity of the page.
     follows: str = ""  # A quantity whose error causes an error of this quantity.
     lag: float = 0.0  # Delay of a first-order value in a prescribed motion, in steps.

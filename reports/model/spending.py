@@ -1,6 +1,6 @@
 """CPU time of the parts of a process. The time of a part does not include the parts inside it.
 
-The time is always measured, since reading the clock takes only a microsecond. `crosscheck bench suite` prints it.
+The time is always measured, since reading the clock takes only a microsecond. `crosscheck bench suite` prints the time.
 """
 
 from __future__ import annotations

@@ -84,7 +84,7 @@ def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_ke
 
 
 def run_chunk(data: bytes) -> bytes:
-    """The pickled answers (index of the item, result or Loss, note) to a pickled chunk. A Dask worker calls it."""
+    """The pickled answers (index of the item, result or Loss, note) to a pickled chunk, in a Dask worker."""
 
     def end_when_closing(running: list[Any]) -> None:
         if _closing.is_set():

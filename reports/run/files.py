@@ -15,14 +15,14 @@ from reports.model.ending import FileTrouble
 
 PREFIX = ".crosscheck_"
 SOCKET_PATH = 104  # Every system accepts paths of sockets with fewer bytes.
-TRIES = 20  # Number of attempts to remove a folder. A process that is being killed may still write into it.
+TRIES = 20  # Number of attempts to remove a folder, into which a process that is being killed may still write.
 
 _folders: list[Path] = []  # The existing temporary folders of this process.
 
 
 @contextmanager
 def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
-    """A context with a new folder in `parent`, by default in the system's temporary folder. The end removes it."""
+    """A context with a new folder in `parent`, or in the system's temporary folder, which is removed at the end."""
     folder = _new_folder(parent)
     try:
         yield folder
@@ -32,7 +32,7 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
 
 @cache
 def socket_folder() -> Path:
-    """A temporary folder for sockets. If the path of the system's temporary folder is too long, it is in /tmp."""
+    """A temporary folder for sockets, in /tmp if the path of the system's temporary folder is too long."""
     atexit.register(remove_all)
     folder = Path(tempfile.gettempdir())
     too_long = len(os.fsencode(folder)) + len(f"/{PREFIX}12345678.part/listener-12345678") >= SOCKET_PATH
@@ -80,7 +80,7 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
     path = Path()
     try:
         with ExitStack() as stack:
-            asides: dict[Path, Path] = {}  # Folder -> a temporary folder in it, on the same disk.
+            asides: dict[Path, Path] = {}  # Folder -> a temporary folder in this folder, on the same disk.
             streams = [path for path in texts if is_stream(path)]
             for path in texts:
                 if path in streams:
@@ -105,6 +105,6 @@ def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
 
 
 def is_stream(path: Path) -> bool:
-    """Whether the path is a device, a pipe or a link in /dev. A file must not replace it."""
+    """Whether the path is a device, a pipe or a link in /dev, which a file must not replace."""
     link = path.is_symlink() and path.absolute().is_relative_to("/dev")  # /dev/stdout may link to a file.
     return link or (path.exists() and not path.is_file() and not path.is_dir())

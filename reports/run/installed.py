@@ -133,7 +133,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
             try:
                 target.rename(folder)
             except OSError:
-                if not folder.is_dir():  # Otherwise another process has installed it.
+                if not folder.is_dir():  # Otherwise another process has installed the version.
                     raise
     except OSError as error:
         raise BadInput(f"{folder} can't be written ({error.strerror or error}): {remedy}") from None
@@ -144,7 +144,7 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
 
 
 def _reason(text: str) -> str:
-    """The last error or the last line that pip printed. OFFLINE if there is no connection."""
+    """The last error or the last line that pip printed, or OFFLINE without a connection."""
     if any(mark in text for mark in UNCONNECTED):
         return OFFLINE
     lines = [line.strip() for line in text.splitlines() if line.strip()]

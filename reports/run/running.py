@@ -17,7 +17,7 @@ from reports.run.files import folder_for
 from reports.run.store import ELSEWHERE, Store
 from reports.run.supervisor import Supervise, Watch, WorkersLost, supervise
 
-TIME_LIMIT = 60.0  # Limit of CPU time for one cell [s]. Only a hang reaches it, since cells of the grid take far less.
+TIME_LIMIT = 60.0  # Limit of CPU time for one cell [s], which only a hang reaches.
 LEAST = 3e-3  # Time that a cell takes in addition to stepping [s].
 
 Item = TypeVar("Item", bound=Cell | Task)

@@ -53,8 +53,8 @@ class Damaged(Exception):
 class Store:
     """A context manager that stores measurements by the key of the cell, and answers by the key of the task.
 
-    A row survives the end of the program once `put` has returned. A damaged file is renamed and replaced by a new one;
-    `notice` then has a sentence about it. The constructor and all methods raise FileTrouble if the file can't be used.
+    A row survives the end of the program once `put` has returned. A damaged file is renamed and replaced by a new file,
+    and `notice` has a sentence about this. The constructor and all methods raise FileTrouble if the file can't be used.
     """
 
     def __init__(self, path: Path) -> None:

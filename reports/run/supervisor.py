@@ -1,8 +1,8 @@
 """Supervision of worker processes. A crash in native code affects only the result of one item.
 
 In pebble, loky and concurrent.futures the workers share a queue with a lock. A worker that is killed while it holds the
-lock stops all workers. Limits apply only to wall time there. In this module each worker has a separate connection, and
-a job counts as run only if its complete answer has arrived.
+lock stops all workers. In those packages limits apply only to wall time. In this module each worker has a separate
+connection, and a job counts as run only if its complete answer has arrived.
 
 * If a worker ends while it starts, no item is affected. After several such failures in a row `WorkersLost` is raised.
 * If a worker ends during an item, a new worker runs the item again, and the second outcome counts. So damage by an
@@ -40,7 +40,7 @@ from reports.run.worker import (
 )
 
 TICK = 0.2  # Time between two readings of the clock [s].
-IMPORTS = 2.0  # CPU time for the import of an engine [s]. A worker imports it when it gets its first job.
+IMPORTS = 2.0  # CPU time for the import of an engine [s], which a worker needs for its first job.
 START_LIMIT = 120.0  # Longest wall time until a worker is ready [s].
 MOST_FAILED_STARTS = 5  # Largest number of failed starts in a row.
 PAUSE = 0.1  # Pause [s] after a failed start, multiplied by the number of failed starts in a row.
@@ -185,7 +185,7 @@ class Pool:
         yield job.item, result, "" if job.earlier_outside else job.earlier
 
     def _on_exit(self, worker: Worker) -> Iterator[Answer]:
-        """Handle the end of a worker. Its job is tried again after a first try unless the CPU time is used up."""
+        """Handle the end of a worker. After a first try the job is tried again unless the CPU time is used up."""
         code, pid, job = worker.exit_code(), worker.process.pid, worker.job
         self._terminate(worker)
         folder, limit, _ = self._terms

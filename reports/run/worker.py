@@ -38,11 +38,11 @@ PATIENCE = 30.0  # Longest time until a killed process has ended [s]. The proces
 READY = b"ready"
 SPENT = 152  # 128 + SIGXCPU, the exit code of a worker that ends itself because its job has used up its CPU time.
 SAFE_PATH = "PYTHONSAFEPATH"  # With this variable, Python does not add the current folder to sys.path.
-OURS = "crosscheck"  # The value of this variable. Workers remove it, so that processes of jobs do not inherit it.
+OURS = "crosscheck"  # The value of PYTHONSAFEPATH. Workers remove it, so that processes of jobs do not inherit it.
 PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2).
 CHECK_INTERVAL = 0.2  # Time between two readings of the CPU time in a worker [s].
 # When a process is started, all child processes are polled. The exit code of an ended process is then consumed, even if
-# another thread supervises it.
+# another thread supervises this process.
 _reading = threading.Lock()
 
 
@@ -234,7 +234,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
 
 
 def _end_with_the_parent() -> None:
-    """Request that Linux kills this process when the fork server ends, which is the parent.
+    """Request that Linux kills this process when its parent, the fork server, ends.
 
     The thread `_watch` is not enough, since native code may hold the interpreter lock. The fork server ends with the
     command after all workers have closed a pipe.
@@ -275,7 +275,7 @@ def _watch(clock: CpuDeadline) -> None:
 def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[bool, bytes]:
     """Run a job; return (whether the state of the process is unchanged, the pickled result or Loss)."""
     try:
-        # This may import an engine. The import does not count as CPU time of the job, or as a change of the process.
+        # An engine may be imported here, which does not count as CPU time of the job or as a change of the process.
         function, item = pickle.loads(job)
     except BaseException as error:  # nothing was run
         return False, pickle.dumps(Loss(Outcome.LOST, f"a worker can't read it: {describe(error)}"))

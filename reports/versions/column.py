@@ -1,4 +1,4 @@
-"""The rows of one version. A process computes them with the version's folder first in sys.path."""
+"""The rows of one version, which a process computes with the version's folder first in sys.path."""
 
 from __future__ import annotations
 
@@ -73,11 +73,11 @@ def column(
     watch: Watch = lambda labels: None,
     done: Callable[[Measurement], None] = lambda row: None,
 ) -> VersionColumn:
-    """Run a version. If its process fails, the rows report this.
+    """Run a version. If the process of the version fails, the rows report this.
 
     engines: engines of this process, which are needed for the rows of a version that can't be used. `watch` is called a
-    few times a second with the labels of running cells. If it raises, the process is ended, and the stored rows remain.
-    `done` is called with each row. Raises BadInput if the code and the metadata have different version numbers.
+    few times a second with the labels of running cells. If `watch` raises, the process is ended, and the stored rows
+    remain. `done` is called with each row. Raises BadInput if the code and the metadata have different version numbers.
     """
     rows: list[Measurement] = []
     trees: list[tuple[Trees, Answer]] = []
@@ -122,7 +122,7 @@ def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
     """Yield the messages of the process (`answer`), and a Loss if the process ends before its last message."""
-    with temporary_folder() as folder:  # Files of engines are deleted with it.
+    with temporary_folder() as folder:  # Files of engines are deleted with this folder.
         error_file = folder / "said.txt"
         with error_file.open("wb") as errors:
             process = subprocess.Popen(
@@ -156,8 +156,8 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
 def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
     """Run the request in the process of the version. Return the reason if the version can't be used, else None.
 
-    `send` is called with each row and each (Trees, Answer). A few times a second it is called with the labels of
-    running cells.
+    `send` is called with each row, with each (Trees, Answer), and a few times a second with the labels of running
+    cells.
     """
     try:
         engines = _usable_engines(request)
@@ -175,7 +175,7 @@ def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
 
 
 def _usable_engines(request: VersionRequest) -> list[Engine]:
-    """The requested engines. Raises ValueError if they can't be used with this version."""
+    """The requested engines. Raises ValueError if the engines can't be used with this version."""
     cant = "our adapter can't use it"
     engines = (*registry.VARIANTS, *registry.OTHERS)
     try:

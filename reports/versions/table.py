@@ -24,7 +24,7 @@ from reports.versions.trees import Trees
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
-WRONG_TREE = 0.01  # A tree counts as wrong if its error, relative to the largest acceleration, is larger.
+WRONG_TREE = 0.01  # A tree counts as wrong if its relative error of accelerations is larger.
 # Smaller relative errors of accelerations may be due to the finite difference and the solver.
 ACCELERATION_ROUNDING = 1e-3
 SAME_COST = 0.1  # A smaller relative difference of two CPU times counts as noise.
@@ -39,7 +39,7 @@ class Entry:
     variant: str
     step: float  # s
     quantity: str
-    error: float  # Largest error of `quantity`, or NaN without a motion. In random trees it is relative.
+    error: float  # Largest error of `quantity`, or NaN without a motion. In random trees the error is relative.
     outcome: str
     cpu: float  # CPU seconds per simulated second, or NaN for random trees.
     sentence: str  # The reason for a missing error, or the number of wrong trees.
@@ -208,7 +208,7 @@ def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
 
 
 def relative_cost(entries: Iterable[Entry], versions: Sequence[str], variant: str) -> dict[str, float]:
-    """Version -> median ratio of its CPU times to those of the newest version, in scenes that both have completed."""
+    """Version -> median ratio of CPU times to the newest version, in scenes that both versions have completed."""
     timed = [entry for entry in entries if entry.variant == variant and entry.comparable and entry.cpu > 0]
     newest = {entry.scene: entry.cpu for entry in timed if entry.version == versions[-1]}
     ratios: dict[str, list[float]] = {version: [] for version in versions}
