@@ -26,9 +26,9 @@ steps have noisier reactions. The page `engines` shows the effect of the frequen
 The engine reduces a rate above an eighth of a turn per step, and the run then has a warning.
 
 The engine uses single precision. Errors of positions below about 1e-6 of the motion are rounding. Errors of
-accelerations below 1e-7 of the speed divided by the step are rounding too. The engine's functions for angles and for
-rotations have errors of 1.6e-3 and 3e-5 rad, so this adapter does not use them. The adapter also counts whole turns,
-which a rotation does not contain.
+accelerations below 1e-7 of the speed divided by the step are rounding too. The adapter computes angles and rotations
+itself, since the engine's functions have errors of 1.6e-3 and 3e-5 rad. The adapter also counts whole turns, which a
+rotation does not contain.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ changes of velocity over the last step, so they are unknown at t = 0.
 
 No force accelerates a joint whose articulated inertia in the model's units is below SIMD_EPSILON = 2.2e-16
 (btMultiBody.cpp). A motor has no effect on a joint whose inertia is above 1 / SIMD_EPSILON = 4.5e15
-(btMultiBodyConstraint.cpp). The adapter warns about both cases.
+(btMultiBodyConstraint.cpp). The adapter warns about inertias that are too small or too large.
 """
 
 from __future__ import annotations
@@ -47,13 +47,12 @@ from reference.trajectory import RunWarning
 MAX_FORCE = 1e30
 # The engine's limit on the rate of a joint [rad/s]. No joint reaches it.
 RATE_LIMIT = 1e9
-# CPU time [s] of a step of three bodies with the settings as shipped. The second value is for one iteration over one
-# row.
+# CPU time [s] of a step of three bodies with the settings as shipped. ITERATION_COST is for one iteration over one row.
 BULLET_STEP_COST = 9e-6
 ITERATION_COST = 0.1e-6
 SHIPPED_ITERATIONS = 50
 SHIPPED_ERP = 0.2
-# SIMD_EPSILON of the engine [kg, kg m^2]. The engine replaces the inverse of a smaller inertia by zero.
+# SIMD_EPSILON of the engine [kg, kg m^2]. The engine replaces the inverse of an inertia below SIMD_EPSILON by zero.
 SMALLEST_INERTIA = float(np.finfo(float).eps)
 UNMOVED = unresolved(0.0, "bullet takes an inertia below 2.2e-16 for none and moves it by no force")
 UNTURNED = unresolved(0.0, "a motor of bullet does nothing to an inertia above 4.5e15")

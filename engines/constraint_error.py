@@ -1,8 +1,8 @@
 """The errors of poses and reactions that follow from the gaps of the joints.
 
 Gaps from regularisation, or from too few solver iterations, hardly depend on the step. A comparison of runs at several
-steps does not show them. Near a singular position J M^-1 J^T has an eigenvalue near zero, so that a small gap means a
-large displacement. The displacement is the smallest one in the norm of the masses that closes the gap.
+steps does not show such gaps. Near a singular position J M^-1 J^T has an eigenvalue near zero, so that a small gap
+means a large displacement. The displacement is the smallest one in the norm of the masses that closes the gap.
 """
 
 from __future__ import annotations

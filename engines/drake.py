@@ -14,21 +14,21 @@ inertia. So gaps are of second order in the step, and the integrator determines 
 fixes the factor 0.1. The settings for contacts, `set_sap_near_rigid_threshold` and the contact approximation, have no
 effect on these mechanisms. *extended* extrapolates runs of *default*.
 
-*tuned* is a plant in continuous time with Drake's integrator `runge_kutta5` in fixed-step mode. Such a plant has no
-constraints and no PD gains, so the adapter refuses mechanisms with a loop, a gear or a drive.
+*tuned* is a plant in continuous time with Drake's integrator `runge_kutta5` in fixed-step mode. A plant in continuous
+time has no constraints and no PD gains, so the adapter refuses mechanisms with a loop, a gear or a drive.
 
 *cenic* is a plant in continuous time with Drake's CenicIntegrator in fixed-step mode, which is of first order too.
-In this plant Drake 1.51 accepts weld and coupler constraints, and Drake 1.58 also accepts ball constraints. A step of
-the free four-bar then takes 7 us instead of 50 us, and the error is nearly that of SAP. The adapter keeps forces
-constant during a step, since CENIC would differentiate them with an increment that depends on the unit. The adapter
-passes on Drake's refusal of a constraint. The adapter also refuses drives, since CENIC turns joints against the desired
-rate (1.51 and 1.58), and bodies of zero mass in slots, since CENIC then returns NaN.
+For CENIC, Drake 1.51 accepts weld and coupler constraints, and Drake 1.58 also accepts ball constraints. A step of the
+free four-bar then takes 7 us instead of 50 us, and the error is nearly that of SAP. The adapter keeps forces constant
+during a step, since CENIC would differentiate them with an increment that depends on the unit. The adapter passes on
+Drake's refusal of a constraint. The adapter also refuses drives, since CENIC turns joints against the desired rate
+(1.51 and 1.58), and bodies of zero mass in slots, since CENIC then returns NaN.
 
 A constraint with the world's body ends the process by a segmentation fault (1.51 and 1.58). Therefore the ground is a
 body that is welded to the world.
 
-The plant computes the accelerations of *tuned*. In the other variants they are changes of velocity over the last step
-and unknown at t = 0.
+The plant computes the accelerations of *tuned*. In the other variants accelerations are changes of velocity over the
+last step and unknown at t = 0.
 """
 
 from __future__ import annotations

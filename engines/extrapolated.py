@@ -176,7 +176,8 @@ class ExtrapolatedRun(OneShot):
         """Whether a further run decides the error.
 
         A further run is needed if the estimate is near the claim. A further run is also needed if the last difference
-        may be small by chance. Then the ratio of the two earlier differences predicts a difference near the claim.
+        may be small by chance. In this case the ratio of the two earlier differences predicts a difference near the
+        claim.
         """
         low, high = OPEN
         if len(self._levels) < 3 or extrapolated.estimate is None:
@@ -292,7 +293,7 @@ class ExtrapolatedRun(OneShot):
 
 
 def _steps_between_compared(samples: int, every: int, bodies: int) -> int:
-    """The number of steps of dt between two compared instants: 1, or more if WATCHED poses would be exceeded."""
+    """The number of steps of dt between two compared instants, so that at most WATCHED poses are stored."""
     least = max(1, -(-samples * every * bodies // WATCHED))
     return next((count for count in range(least, every) if every % count == 0), every)
 

@@ -9,7 +9,7 @@ disc in the plane, with constraints on the rolling velocity and on the velocity 
 no equation for other shapes. Springs, dampers, forces and torques are elements of the engine.
 All variants switch off `timeIntegration.adaptiveStep`, which would halve a step if Newton's method fails.
 
-The joints are exact up to the tolerance of Newton's method. The integrator "GeneralizedAlpha" satisfies them for
+The joints are exact up to the tolerance of Newton's method. The integrator "GeneralizedAlpha" satisfies the joints for
 positions (index 3), and "TrapezoidalIndex2" for velocities (index 2). Both integrators have order 2. The engine's
 explicit integrators accept none of these joints.
 
@@ -109,7 +109,7 @@ class Exudyn(ExtraEngine):
 
 DEFAULT = Exudyn("default")
 # The tolerance of 1e-13 is 450 units of rounding. The error of Newton's method is equal at all levels, so the estimate
-# does not show it. In 1e4 steps it grows to a rate of 1e-9, which is a hundredth of the claim.
+# does not include this error. In 1e4 steps it grows to a rate of 1e-9, which is a hundredth of the claim.
 TUNED = Exudyn(
     "tuned", "TrapezoidalIndex2", relative=1e-10, absolute=1e-13, consistent=True, sparse=True, own_units=True
 )

@@ -1,8 +1,8 @@
 """The base class of engines that step MuJoCo's model by another implementation, on a processor or a GPU.
 
-Our MuJoCo adapter compiles the MjModel with the same settings, so only the implementation differs from `mujoco`. These
-implementations have no callbacks, so models with callbacks are refused. Skates and rolling are refused too, since these
-adapters build no contact.
+Our MuJoCo adapter compiles the MjModel with the same settings, so only the implementation differs from `mujoco`. The
+other implementations have no callbacks, so models with callbacks are refused. Skates and rolling are refused too, since
+these adapters build no contact.
 """
 
 from __future__ import annotations

@@ -107,7 +107,7 @@ class Tree:
     def closes_by(self, joint: Joint) -> bool:
         """Whether a solver needs loop-closing rows for the joint.
 
-        A skate, a roll, or a drive of a single tree coordinate needs no such rows.
+        A skate, a roll, or a drive of a single tree coordinate needs no loop-closing rows.
         """
         return joint.name in self._looping
 

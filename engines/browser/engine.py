@@ -6,7 +6,7 @@ trial world, which is not timed. `python -m engines.browser` installs the packag
 
 The adapter switches off damping, which removes 10 % (p2) or 5 % (Jolt) of the velocity per second as shipped. Bodies do
 not sleep or collide. A Pin is a revolute joint or a hinge, a Weld is a fixed joint, and a Rod is a distance joint. A
-Slot is a prismatic joint if a Drive of rate zero keeps the angle. Otherwise it is planck's wheel joint, or p2's
+Slot is a prismatic joint if a Drive of rate zero keeps the angle. Otherwise a Slot is planck's wheel joint, or p2's
 prismatic constraint without the rotational lock. A Drive is the motor of the Pin between the same two bodies.
 
 Every step is semi-implicit Euler: first forces, then impulses of the joints, then positions. The engines correct gaps

@@ -133,7 +133,7 @@ def sampling_changes_nothing(subject: CheckedEngine, world: World) -> None:
     """A run that records each third state has the same states as a run that records all, to rounding."""
     samples, every = COARSE_SAMPLING
     dense, sparse = subject.run(world.mechanism), subject.run(world.mechanism, CHECK_STEP, samples, every)
-    # A run claims no accuracy after `unresolved_at`. The two runs may have different values.
+    # A run claims no accuracy after `unresolved_at`. The two runs may have different values of `unresolved_at`.
     unresolved = min(math.inf if run.unresolved_at is None else run.unresolved_at for run in (dense, sparse))
     claimed = sparse.t < unresolved
     for name in ("pose", "twist", "reaction"):

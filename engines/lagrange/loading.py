@@ -5,8 +5,8 @@ code from files in a fraction of a second. numba is imported at the first step.
 
 numba's cache checks the source file of a called function, but not the sources of the functions that it calls. The name
 of the folder therefore contains a digest of all sources. The folder is in NUMBA_CACHE_DIR if this variable is set.
-Otherwise it is next to the sources, or in the user's cache folder if the installation is read-only. Two processes may
-compile at the same time, since numba replaces whole files.
+Otherwise the folder is next to the sources, or in the user's cache folder if the installation is read-only. Two
+processes may compile at the same time, since numba replaces whole files.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class CompiledFunctions(NamedTuple):
 def compiled() -> CompiledFunctions:
     """The compiled functions; raises ImportError without numba."""
     config = import_module("numba").config
-    default, config.CACHE_DIR = config.CACHE_DIR, str(_cache_folder())  # numba reads this when functions are defined
+    default, config.CACHE_DIR = config.CACHE_DIR, str(_cache_folder())  # read when functions are defined
     try:
         steps = import_module("engines.lagrange.compiled.steps")
         adaptive = import_module("engines.lagrange.compiled.adaptive")

@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 
 FIXED_STEP_TABLEAUS = {"euler": NO_STAGES, "rk4": RK4, "dop853": FIXED_DOP853}
 # A row is lost if its slip exceeds this share of the largest speed after a projection. Without a projection, the error
-# of its acceleration is compared with the largest acceleration. The value is the square root of the rounding.
+# of the row's acceleration is compared with the largest acceleration. The value is the square root of the rounding.
 LOST_ROW = 1.5e-8
 # Smallest speed with which a slip is compared, in units of the mechanism's length and time scale.
 SLOW_MOTION = 1e-4

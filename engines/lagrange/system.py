@@ -1,7 +1,7 @@
 """The records of a mechanism for compiled code.
 
 The rows are in reverse Cuthill-McKee order, so the envelope of the matrix J M^-1 J^T is narrow, with O(bodies) entries
-for a chain. Each entry is a sum of products of two ends of rows on one body. This module lists these products.
+for a chain. Each entry is a sum of products of two ends of rows on one body. This module lists the products of ends.
 """
 
 from __future__ import annotations
@@ -257,8 +257,8 @@ def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Re
 def _has_dependent_rows(mechanism: Mechanism) -> bool:
     """Whether rows are linearly dependent at t = 0, for example the rows of two wheels on one axle.
 
-    The rank of more than MOST_RANKED_ROWS is not computed, since the factorisation also detects dependent rows. The
-    result is then whether there are more rows than coordinates.
+    The rank of more than MOST_RANKED_ROWS is not computed, since the factorisation also detects dependent rows. For so
+    many rows, the result is whether there are more rows than coordinates.
     """
     rows = mechanism.row_count
     if rows > 3 * len(mechanism.bodies):

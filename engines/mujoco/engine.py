@@ -192,9 +192,9 @@ class MuJoCo(Engine, Valid):
         data = model.start()
         _refuse_huge_rates(data)
         if self.estimates:
-            # Newton's method ends when its cost no longer decreases. The first solution then has a relative error of
-            # 1e-5 in the accelerations of light bodies. The next solution starts from the first one and corrects this
-            # error.
+            # Newton's method ends when its cost no longer decreases. The first solution therefore has a relative error
+            # of 1e-5 in the accelerations of light bodies. The next solution starts from the first one and corrects
+            # this error.
             data.qacc_warmstart[:] = data.qacc
         size = Size(
             bodies=model.compiled.nbody - 1,

@@ -42,7 +42,8 @@ JOINT_CONSTRUCTIONS: Mapping[type, Callable[[ModelBuilder, Sequence[Any]], None]
     Roll: add_rolls,
 }
 MUJOCO_CAPABILITY = Capability("mujoco", frozenset(JOINT_CONSTRUCTIONS), frozenset(FORCE_CONSTRUCTIONS))
-# Largest unit of mass relative to the smallest mass or inertia. The smallest value in this unit is far above mjMINVAL.
+# Largest unit of mass relative to the smallest mass or inertia. With this unit, the smallest mass or inertia is far
+# above mjMINVAL.
 MAX_MASS_RATIO = 1e13
 
 

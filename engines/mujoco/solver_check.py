@@ -28,9 +28,9 @@ def solver_residual(compiled: Any, data: Any) -> float:
     """The residual of the solver's equations, relative to the accelerations.
 
     The dual solver satisfies Newton's law M a = f + J^T F exactly. The primal solvers satisfy the constraint law J a +
-    R F = a_ref exactly. The residual of the other law is the error. Contact rows that open or slide have another law
-    and are not included. If R is so small that forces are mostly rounding, the accelerations are compared with an exact
-    solution.
+    R F = a_ref exactly. The error is the residual of the law that is not satisfied exactly. Contact rows that open or
+    slide have another law and are not included. If R is so small that forces are mostly rounding, the accelerations are
+    compared with an exact solution.
     """
     if not data.nefc:
         return 0.0

@@ -80,8 +80,8 @@ class StepDoubling:
     def unresolved_from(self, error: Array) -> int | None:
         """The number of steps after which the motion is unresolved; None if no error (times, bodies, 3) exceeds CLAIM.
 
-        This is the count of the first error above CLAIM, or the count after the last `conclusive` index if that is
-        smaller. Without a conclusive index it is 0.
+        The result is the count of the first error above CLAIM, or the count after the last `conclusive` index if this
+        is smaller. The result is 0 if no index is conclusive.
         """
         above = np.flatnonzero(~(self.relative(error) <= CLAIM))
         if not len(above):

@@ -60,7 +60,7 @@ class TiedToStep(_Spring):
     The gap R f / k is proportional to the square of the step. MuJoCo increases a shorter time constant to two steps,
     unless the flag `refsafe` is disabled (mjDSBL_REFSAFE in mjtype.h). The integrator "discrete" keeps short time
     constants of equalities, and increases those of contacts to about one step (4.0.1, checked in
-    `tests/engines/test_mujoco_upstream.py`). `time_constant` is valid for the other integrators.
+    `tests/engines/test_mujoco_upstream.py`). `time_constant` is valid for all integrators except "discrete".
     """
 
     steps: Positive = 5.0

@@ -115,8 +115,8 @@ def _kind(engine: Pymunk, mechanism: Mechanism) -> Kind:
 def _is_unstable(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
     """Whether impulses grow from step to step in the limit of short steps.
 
-    In this limit a step corrects the whole gap (error_bias 0) or no part of it. The result is False for more than DENSE
-    rows, for which stability is not computed.
+    In the limit of short steps, a step corrects the whole gap (error_bias 0) or no part of the gap. The result is False
+    for more than DENSE rows, for which stability is not computed.
     """
     if mechanism.row_count > DENSE:
         return False

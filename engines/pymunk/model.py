@@ -3,7 +3,8 @@
 A spring acts at the pose after the drift, as gravity does, and does not lower the order of convergence. A damper has
 order 1. A damper multiplies the relative velocity by exp(-damping dt / effective mass) after the kick, and not by the
 square root of this factor before and after the kick. Chipmunk applies the force and torque of a body after the drift,
-and resets them in every step. Our code therefore sets them before each step, for the exact pose after the drift.
+and resets them in every step. Our code therefore sets forces and torques before each step, for the exact pose after the
+drift.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""The equations of motion and the steps as functions that numba compiles. Only `engines.lagrange.loading` imports them.
+"""The equations of motion and the steps as functions that numba compiles. Only `engines.lagrange.loading` imports these
+functions.
 
 The functions change the arrays of a `records.System` and a `records.StepStorage`, and return numbers or booleans. A
 division by zero gives an infinity or NaN, as in numpy. Numba does not reorder sums, so results are equal on all

@@ -22,7 +22,8 @@ MOST_TRIES = 20_000
 FURTHER_STEPS_PER_SAMPLE = 1_000
 # The relative rounding of double precision.
 DOUBLE_EPSILON = 2.2e-16
-# Largest rotation [rad] between the start of a step and a stage, for a contact. Otherwise the step is too long.
+# Largest rotation [rad] between the start of a step and a stage, for a contact. A step with a larger rotation is too
+# long.
 FARTHEST_STAGE = 1.0
 # STIFF_PRODUCT is the step times the largest eigenvalue at the stability limit. After STIFF_STEPS consecutive steps at
 # the limit, the motion counts as stiff.
@@ -72,7 +73,7 @@ def adaptive_steps(system, storage, begin, poses, twists, method, iterations, to
         status.accepted_steps += 1
         done = fill_samples(system, storage, method, iterations, t, dt, end, spacing, sample, poses, twists)
         tries, sample = (0 if done > sample else tries), done
-        if sample < last and end >= spacing * (sample + 1):  # a state in this step is not finite
+        if sample < last and end >= spacing * (sample + 1):  # a sample of this step is not finite
             return sample
         t = end
         advance(storage)

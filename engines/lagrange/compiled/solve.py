@@ -85,7 +85,7 @@ def factorise(system):
 
 @merged
 def leave_out(system, row, first, begin):
-    """Remove the entries of a row that couple selected rows with others."""
+    """Remove the entries of a row that couple selected rows with rows that are left out."""
     is_out = is_left_out(system, row)
     for column in range(first, row):
         if is_out or is_left_out(system, column):

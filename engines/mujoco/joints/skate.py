@@ -1,8 +1,8 @@
 """Constructions of a skate, for which MuJoCo has no joint. `SkateBy` is the construction:
 
 - "blade": a capsule that touches a plane, with friction across the capsule. MuJoCo's maintainers suggest this.
-- "predicted tendon": a fixed tendon whose coefficients are the row of the skate. Our code computes them before every
-  step, for the pose that the velocity predicts at the end of the step.
+- "predicted tendon": a fixed tendon whose coefficients are the row of the skate. Our code computes the coefficients
+  before every step, for the pose that the velocity predicts at the end of the step.
 - "rows": a row for the skate that a callback writes in every stage.
 
 Bodies cannot move out of the plane, so weight does not press a blade on the ground. Our code therefore raises the

@@ -222,7 +222,7 @@ def _read_sum(planar: PlanarModel, index: int, element: str, parts: WeightedJoin
     if np.any(planar.model.eq_data[index][2:5]):
         raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
     slides = any(planar.model.jnt_type[joint] != HINGE for joint, _ in parts)
-    # A smaller gap is rounding in the file, and the reader closes it.
+    # A smaller gap is rounding in the file, which the reader closes.
     largest = max((abs(factor) for _, factor in parts), default=1.0)
     if abs(open_by) > PRINTED * largest * (max(1.0, float(planar.model.stat.extent)) if slides else 1.0):
         raise refuse(element, f"it is open by {abs(open_by):.2g} {'m' if slides else 'rad'} at the start")

@@ -60,7 +60,7 @@ def plain_name(model: Any, kind: Any, index: int) -> str:
 
 
 def find_frame(model: Any, data: Any) -> Frame:
-    """The plane in which every joint moves its body. Raises Unsupported if there is no such plane."""
+    """The plane in which every joint moves its body. Raises Unsupported if the bodies do not move in one plane."""
     kinds = model.jnt_type
     for index in np.flatnonzero(kinds == BALL):
         raise refuse(name_of(model, JOINT, index), "a ball joint turns its body out of any plane")
@@ -98,7 +98,7 @@ def _refuse_tilted_joints(model: Any, data: Any, normal: Array) -> None:
 
 
 def _nearest_axis(normal: Array) -> Array:
-    """The axis of the world within MAX_TILT of a unit vector, or the vector if there is none."""
+    """The axis of the world within MAX_TILT of a unit vector, or the vector if no axis is so near."""
     axis = np.round(normal)
     return axis if np.linalg.norm(normal - axis) <= MAX_TILT else normal
 

@@ -61,7 +61,8 @@ def positions(planar: PlanarModel, pose: Array) -> Array:
     out = np.empty((len(pose), model.nq))
     for sample, wanted in enumerate(pose):
         data.qpos[:] = planar.data.qpos
-        # Angles are linear in the coordinates that turn bodies. For given angles, positions are linear in the others.
+        # Angles are linear in the coordinates that turn bodies. For given angles, positions are linear in the
+        # coordinates that shift bodies.
         for part in (slice(2, 3), slice(0, 2)):
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)

@@ -218,7 +218,7 @@ class OwnPymunk:
 def start_ahead(name: str, space: pymunk.Space, dt: float) -> list[str]:
     """Lines of a script that advance the velocities of the space `name` by half a step of dt [s]."""
     save, restore = list[str](), list[str]()
-    if any(body.force.length or body.torque for body in space.bodies):  # a step resets them
+    if any(body.force.length or body.torque for body in space.bodies):  # a step resets the forces
         save = [f"pushed = [(body, body.force, body.torque) for body in {name}.bodies]"]
         restore = ["for body, force, torque in pushed:", "    body.force, body.torque = force, torque"]
     return [

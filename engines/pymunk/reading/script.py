@@ -116,7 +116,7 @@ def _run_script(path: Path, file: str, name: str, half: float | None = None) -> 
 
 
 def _with_parts(script: ScriptSpace) -> ScriptSpace:
-    """Remove an attribute `step` of the space, since a copy of the space would step the original by it."""
+    """Remove an attribute `step` of the space, since it would step the original even in a copy of the space."""
     step = vars(script.space).pop("step", None)
     return replace(script, parts=int(getattr(step, "parts", 1)))
 
