@@ -191,8 +191,9 @@ def motion(rates: Rates, start: ArrayLike, until: float, unit: ArrayLike, coarse
     """The motion up to `until` [s] from a start of n angles and n rates, with `rates` in double precision.
 
     Returns a function from times (times,) to states (times, 2 n). The method is collocation, or the explicit method of
-    `integration` if collocation needs many windows. `integration.integrate` explains unit (2 n,). `coarser` is a factor
-    on the tolerance; a value other than 1 also selects the rule with COARSE_STAGES. Raises IntegrationFailed.
+    `integration` if collocation needs many windows. The argument `unit` (2 n,) is that of `integration.integrate`.
+    `coarser` is a factor on the tolerance; a value other than 1 also selects the rule with COARSE_STAGES. Raises
+    IntegrationFailed.
     """
     state = np.asarray(start, dtype=float)
     half = len(state) // 2

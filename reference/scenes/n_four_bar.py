@@ -118,7 +118,7 @@ class NFourBar(Scene):
         """
         n, m, size = self.loops, self.mass, self.length
         _, _, moving = self._placement(angle, rate, acceleration)
-        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))  # sum of the pin forces
+        coupler = m * (moving[:, -1, :2] + np.array([0.0, self.gravity]))
         crank = m * (moving[:, 0, :2] + np.array([0.0, self.gravity]))
         down = direction_of(angle)
         top = np.zeros((len(angle), n + 1, 2))  # forces of the couplers on each crank's top

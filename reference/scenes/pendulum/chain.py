@@ -223,7 +223,7 @@ class Chain(Valid):
 
     @cached_readonly
     def inertia_matrix(self) -> Array:
-        """M_ij (links, links) in the kinetic energy, the sum of M_ij cos(angle_i - angle_j) rate_i rate_j / 2.
+        """M_ij (links, links) in the kinetic energy, which is the sum of M_ij cos(angle_i - angle_j) rate_i rate_j / 2.
 
         Raises InvalidMechanism if the matrix takes more than checks.LARGEST_ARRAY.
         """
@@ -237,7 +237,7 @@ class Chain(Valid):
 
     @cached_readonly
     def stiffness(self) -> Array:
-        """K_i (links,) [N m] in the potential energy, minus the sum of K_i cos(angle_i)."""
+        """K_i (links,) [N m] in the potential energy, which is the sum of -K_i cos(angle_i)."""
         below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
         return self.gravity * self._length * (self._mass / 2 + below)
 

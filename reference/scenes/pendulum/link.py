@@ -1,7 +1,7 @@
 """Exact motion of one link under gravity (swinging, whirling or on the separatrix) and of the point pendulum.
 
 The angle from the downward vertical, counter-clockwise, satisfies angle'' = -f^2 sin(angle). With s = sin(angle/2) and
-p = rate/(2f) the energy is s^2 + p^2 = k^2, and (Whittaker, Analytical Dynamics, 44)
+p = rate/(2f), the energy is s^2 + p^2 = k^2. The solutions are (Whittaker, Analytical Dynamics, 44)
 
     k < 1, swinging:  sin(angle/2) = k sn(f t + c, k),  rate = 2 f k cn,
     k > 1, whirling:  angle/2 = am(k f t + c, 1/k),     rate = 2 f k dn,

@@ -147,7 +147,7 @@ class RollingCam(RollingScene):
     radius: Positive = 0.4  # m, mean radius.
     cosines: tuple[float, ...] = (0.05, 0.0, 0.02)  # m, its harmonics.
     sines: tuple[float, ...] = (0.0, 0.02)
-    gyration: Positive = 0.28  # m, radius of gyration
+    gyration: Positive = 0.28  # m
 
     def body_curve(self) -> Curve:
         return Cam(self.radius, self.cosines, self.sines)

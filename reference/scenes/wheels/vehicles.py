@@ -180,7 +180,7 @@ Input = float | Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Casters(Valid):
-    """Casters with one trail [m] and kingpins at `places` (ahead, left) [m] from the middle of the fixed axle."""
+    """Casters of equal trail [m]; `places` [m] of the kingpins are ahead and left of the fixed axle's middle."""
 
     places: tuple[Vector, ...]
     trail: Positive
