@@ -135,7 +135,7 @@ class PlantedFault:
         return replace(part, **{name: off})
 
     def _heavier(self, mechanism: Mechanism, body: Body) -> Body:
-        """The body with a larger inertia if the condition of this fault holds for the body."""
+        """The body, with a larger inertia if it satisfies the condition of the fault."""
         off = {
             "inertia": True,
             "shifted": body.pose[0] > 0,

@@ -91,7 +91,7 @@ def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
 
 
 def rows_of_pages(pages: Mapping[Page, Material]) -> Rows:
-    """The rows of the scenes of pages; the largest step is first. Rows of scenes with other parameters are left out."""
+    """The rows of the pages' scenes, sorted by decreasing step. Rows of scenes with other parameters are left out."""
     scenes = {scene.name: scene for page in pages for scene in page.scenes}
     rows = {
         cell: row

@@ -99,7 +99,7 @@ def tried(reading) -> list[str]:
 
 
 def spaces() -> Iterator[Found]:
-    """The lines of pymunk's examples, which are run without a window."""
+    """The table's lines for pymunk's examples, which are run without a window."""
     for path in sorted(EXAMPLES.glob("*.py")):
         if path.name.startswith("_"):
             continue
@@ -129,7 +129,7 @@ def unpacked(folder: Path) -> bool:
 
 
 def models(folder: Path) -> Iterator[Found]:
-    """The lines of the models in MuJoCo's package, and in the packages in `folder`."""
+    """The table's lines for the models in MuJoCo's package and in the packages in `folder`."""
     places = {
         "mujoco": Path(mujoco.__file__).parent / "testdata",
         "gymnasium": folder / "gymnasium/gymnasium/envs/mujoco/assets",

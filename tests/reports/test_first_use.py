@@ -1,4 +1,5 @@
-"""Tests of the ideal motion in a new installation. It is computed in numpy while this is faster than compiling."""
+"""Tests of the ideal motion in a new installation. The first motions are computed in numpy while numpy is faster than
+compilation."""
 
 from __future__ import annotations
 

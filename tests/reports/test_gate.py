@@ -119,8 +119,7 @@ BOUNDS: dict[str, tuple[Given, str, float]] = {  # case -> (arguments of `theory
     "a promise of all others": ((JUDGE, ConvergenceOrder(4, rate=2), None, []), "angle", ROOM * 1e-12 + 1e-11),
     "an exact gap": ((JUDGE, ConvergenceOrder(4, gap=EXACT), None, []), "gap", 1e-12),
     "a reaction of a single step without a promise": ((JUDGE, UNKNOWN, None, []), "reaction", 0.5),
-    # The bound is the change of the rate at 2 rad/s^2 in half a step of 1e-3 s. Errors at coarser steps do not change
-    # it.
+    # The bound is the change of the rate at 2 rad/s^2 in half a step of 1e-3 s, whatever the coarser steps allow.
     "the middle of a step": (
         (PRESCRIBED, ConvergenceOrder(2, rate=1), None, coarser("rate", at1=1e-2, at3=3.3e-3)),
         "rate", 1.25e-3 + 1e-10),

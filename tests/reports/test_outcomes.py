@@ -99,7 +99,7 @@ def told(trajectory: Trajectory, count: int | None = None, **fields_of_a_row) ->
 
 
 def test_the_gravest_defect_determines_the_outcome():
-    """A row with all defects has the gravest outcome; if this defect is removed, it has the next outcome."""
+    """A row with all defects has the gravest outcome. Without the gravest defect, it has the next outcome."""
     everything = {"gap": 2 * BLOWN * LENGTH, "drive_gap": 1.0, "flips": 2, "angle": 1.0, "angle_duration": 1.0}
     assert told(disc(reset_at=0.1), 5, **everything) == "reset"
     assert told(disc(), 5, **everything) == "diverged"

@@ -231,7 +231,7 @@ def test_a_worse_or_slower_build_is_reported_and_its_output_is_contained(here, c
     assert "is worse than" in document["message"]
     assert not list(here.rglob("left.txt"))
     assert not (here / "crosscheck-results").exists()  # The build may change, so its rows are not stored.
-    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # A notebook makes this call.
+    comparison = compare_builds("2.0", "1.0", "adapter.py:ENGINE", scenes=[Disc()])  # A notebook calls this function.
     assert [column.trouble for column in comparison.columns] == ["", ""]
     assert comparison.complaint == ""
     # The ratio of CPU times is 1, since the toy returns a constant cost.
@@ -304,7 +304,7 @@ def test_a_version_that_can_not_be_installed_is_refused_in_one_line(printed, rea
         invoke(["versions", "pymunk", "7.2.5", "--scenes", "free_four_bar"])
     assert "\n" not in str(refused.value)
     assert refused.value.status == 2
-    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # this is printed before pip runs
+    assert "pymunk 7.2.5: installed by pip" in capfd.readouterr().err  # the line is printed before pip runs
     assert not (here / "crosscheck-results").exists()
 
 

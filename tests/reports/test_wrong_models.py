@@ -91,8 +91,8 @@ UNNOTICEABLE_IN: dict[tuple[str, str, str], str] = {
     ("free_slider_crank", "lagrange", "point guide second_point x"): NO_TORQUE,
 }
 
-# Reasons why the bounds from theory do not detect some mistakes. The comparison with the baseline detects them, since
-# with the same versions each error changes by rounding only.
+# Reasons why the bounds from theory do not detect some mistakes. The comparison with the baseline detects these
+# mistakes, since without a mistake only rounding changes an error.
 FORCES = "the mistake shows in forces alone, and in a part of them that is smaller than what theory allows this order"
 COARSE = "of first order: at the finest step that is run its own error is as large as what the mistake makes"
 POLYGON = "a body that is not round is a polygon here, and its blows are larger than what the mistake makes"

@@ -120,7 +120,7 @@ def _rolling(window: SampleWindow) -> dict[int, Values]:
 def _skate(window: SampleWindow) -> dict[int, Values]:
     pose, twist = window.pose[:, 0], window.twist[:, 0]
     along = np.stack([np.cos(pose[:, 2]), np.sin(pose[:, 2])], axis=-1)
-    # G and C have this speed, since the line C G is parallel to the blade
+    # G and C have the same speed along the blade, since the line C G is parallel to it
     speed = np.sum(twist[:, :2] * along, axis=-1)
     push, turning = (float(window.change(values)) for values in (speed, twist[:, 2]))
     state = (float(pose[MIDDLE, 2]), float(speed[MIDDLE]), push, float(twist[MIDDLE, 2]), turning, (SLEIGH.offset, 0.0))

@@ -91,7 +91,7 @@ RECOMMENDED = "free_four_bar"
 
 # The printed figure has nine poses at the ends of eight equal intervals, and the last pose equals the first.
 INTERVALS = 8
-SAMPLES_PER_INTERVAL = 8  # this gives a step of about 1e-2 s in engines
+SAMPLES_PER_INTERVAL = 8  # with this number, engines have a step of about 1e-2 s
 DRAWN_OVER_TRUTH = {"pymunk default": ("first", "--"), "mujoco default": ("second", ":")}
 
 # The readme's animation shows MOVING_METHODS and the exact motion, with steps of 1 ms.

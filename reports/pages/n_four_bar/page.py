@@ -24,7 +24,7 @@ from reports.write.unmeasured import UNMEASURED
 
 SHIPPED_RK4 = replace(mujoco.DEFAULT, variant="RK4 alone", integrator="RK4")
 SOFT_LOOPS = cells(NFourBar(), (mujoco.DEFAULT, SHIPPED_RK4), (1, 3, 10, 30))
-ONCE = NFourBar(duration=1.2, horizon=1.2)  # this motion passes only the first singular position
+ONCE = NFourBar(duration=1.2, horizon=1.2)  # a motion that passes only the first singular position
 
 
 def forces_without_a_limit(material: Material) -> list[Observation]:

@@ -127,7 +127,7 @@ ROLLING_SCENES = (
 COMPARED_ENGINES = tuple(engine for engine in VARIANTS if engine.variant != "euler projection")
 ROLL_CONSTRUCTIONS: tuple[Engine, ...] = (pymunk_methods.ROLL_PIVOT, *mujoco_methods.ROLLS)
 
-HILL_SCENE = RollingOnCircle()  # this object is shared, because it caches its last comparable instant
+HILL_SCENE = RollingOnCircle()  # the scene is shared, because it caches its last comparable instant
 
 
 def compared(scene: Scene, engine: Engine) -> bool:

@@ -96,7 +96,7 @@ class Fresh(MethodTask):
         return float(early.max()) if np.isfinite(early).all() else inf
 
 
-GAP_DURATION = 10.0  # s; this is longer than the trial run of `choose`.
+GAP_DURATION = 10.0  # s; longer than the trial run of `choose`.
 ANGLE_DURATION = 3.0  # s.
 LINKAGE_STEP = 1 / 240  # s.
 
