@@ -37,7 +37,7 @@ def test_a_floor_above_rounding_is_a_plateau_and_leaves_the_order_alone(order, f
     assert result.verdict is Verdict.PLATEAU
     # The limit is fitted together with a power of the step, so it is exact up to rounding.
     assert result.plateau == pytest.approx(floor, rel=1e-6)
-    # The points of the falling part contain the floor, which reduces the fitted order by up to a third.
+    # The floor is a part of each error, so it reduces the fitted order by up to a third.
     assert result.order == pytest.approx(order, abs=0.35 * order)
     assert result.points >= 2
     power = fit(STEPS, 3 * STEPS**order, ROUNDING)

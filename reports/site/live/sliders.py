@@ -95,8 +95,8 @@ class Live(Look):
     frames: number of sampling intervals. steps: choices for the number of steps of the whole motion, each a multiple or
     a divisor of `frames`. start: index of the initial choice. munk, mujoco: methods with labels. The first two methods
     have the default and the documented settings. A string instead of an engine is the reason why the method is
-    missing. window: first and last frame that are played, or None for all frames. traces: points (body, point) whose
-    paths are drawn. centre: the body whose instant centre can be shown.
+    missing. window: first and last frame that are played, or None for all frames. traces: pairs (body, point) of points
+    with a drawn path. centre: the body whose instant centre can be shown.
     """
 
     word: str
