@@ -2,9 +2,10 @@
 
 A frozen dataclass that inherits from `Valid` checks its fields when it is made. A function with `validated` checks its
 arguments when it is called. Both raise InvalidMechanism, a ValueError, with a sentence that states which value is
-wrong, why, and which values are valid. Numpy's numbers become Python's; lists and arrays become tuples or arrays of
-floats, as declared. Equal settings have equal reprs then. Relations between values (lengths that assemble) are checked
-by the class itself. The validators are in `reference.validators`.
+wrong, why, and which values are valid. Numbers of numpy are converted to numbers of Python. Lists and arrays are
+converted to the declared type, a tuple or an array of floats. So equal settings have equal reprs.
+Relations between values (lengths that assemble) are checked by the class itself. The validators are in
+`reference.validators`.
 """
 
 from __future__ import annotations

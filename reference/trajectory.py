@@ -28,7 +28,7 @@ WarningKind = Literal[
     "rate limit",  # A velocity was limited.
     "reactions",  # Reactions are unknown or have a large error.
     "residual",  # A solver left a residual.
-    "start reactions",  # Only the reactions at the start have an error.
+    "start reactions",  # The reactions at the start are wrong, and all other values are right.
     "stiff",  # The steps are limited by stability and not by accuracy.
     "unconverged",  # The solver's slowest mode does not converge within a step.
     "unresolved",  # The error may exceed the method's claim.

@@ -109,7 +109,7 @@ class Named:
 
 @dataclass(frozen=True)
 class Question:
-    """A check of one engine that a worker runs."""
+    """The request to check one engine in a worker process."""
 
     named: Named
     index: int  # Index of the engine in `named.engines()`.

@@ -176,7 +176,7 @@ def error_against_step(
 
 
 def _guides(panel: Axes) -> None:
-    """Draw a fan of slopes as far as possible from the lines of the panel, within the limits of the axes."""
+    """Draw reference lines with several slopes at the place that is farthest from the curves of the panel."""
     low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
     size = high - low  # decades
     width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]

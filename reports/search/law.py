@@ -26,7 +26,7 @@ from reports.gate.change import Nudge
 Array = NDArray[np.float64]
 
 NOISE_MARGIN = 10.0  # The margin is above 1, since the noise is the maximum of few samples.
-NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # NUDGE_SHARE is the shift relative to a distance, and the rotation in radians.
+NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # Shifts are NUDGE_SHARE times a distance; rotations are NUDGE_SHARE rad.
 LAW_TOLERANCE = 1e-9  # The tolerance is a thousand times the rounding error with independent rows.
 PRECISION_MARGIN = 10.0  # Tolerance in units of the engine's precision.
 INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # The step is in units of the mechanism's time scale.

@@ -183,7 +183,8 @@ def test_an_engine_has_its_declared_order_or_refuses_the_element_by_name(engine:
             engine.build(linkage, 1e-3)
         assert any(element_name in str(refused.value) for element_name in named), str(refused.value)
         return
-    # At these steps errors of order 1 are far larger than errors of order 2. Errors of order 4 are far above rounding.
+    # At these steps errors of order 1 are far larger than errors of order 2. Errors of fourth-order
+    # methods are far above rounding.
     coarse, fine = (missed(engine, linkage, name, every) for every in (40, 80))
     way = np.abs(exact(name) - exact(name)[0]).max() / linkage.length_scale
     promise = engine.order(linkage)

@@ -62,7 +62,7 @@ def test_the_error_bound_of_a_motion_with_few_windows_is_above_its_true_error():
     )
     stated = gauss.error_of(rates, [3.0, 0.5], t, np.ones(2))
     assert np.all(stated > np.abs(found - exact(t)).max(axis=-1))
-    # If the coarser rule were as accurate, the bound would be ten roundings.
+    # The bound is the difference from a coarser rule, so it is larger than rounding errors.
     assert stated.max() > 1.5 * gauss.COARSER * np.finfo(float).eps * np.abs(found).max()
     assert stated.max() < 1e-10
 

@@ -251,7 +251,7 @@ def still(task: Task, lost: bool = False) -> Answer:
             values = {"growth": np.ones(len(task.times))}
         case Offsets():
             values = {"across": np.full(len(task.offsets), -0.1)}
-        case published.Newton():
+        case published.NewtonBounds():
             values = {
                 name: np.full(len(published.NEWTON_STEPS), bound / 2) for name, bound in published.NEWTON_BOUNDS.items()
             }

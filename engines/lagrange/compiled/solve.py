@@ -1,8 +1,8 @@
 """Solve the row system J M^-1 J^T reaction = right (Schur complement of the KKT system), O(bodies) for a chain.
 
-The factor L D L^T needs no scaling, since scaled rows give the same digits. If a pivot relative to the diagonal is
-below the limit, the row depends on earlier rows. The reaction of a dependent row is set to zero, which does not change
-the motion. The condition number of J M^-1 J^T is the square of that of J M^-1/2. If a pivot is small, the residual is
+The factor L D L^T needs no scaling, since scaled rows give the same digits. If the ratio of a pivot to its diagonal
+entry is below the limit, the row depends on earlier rows. Its reaction is set to zero, which does not change the
+motion. The condition number of J M^-1 J^T is the square of that of J M^-1/2. If a pivot is small, the residual is
 therefore computed with J, and the system is solved for a correction (corrected seminormal equations, Bjorck 1987).
 """
 

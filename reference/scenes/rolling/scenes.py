@@ -29,7 +29,10 @@ from reference.validators import Rule
 
 @dataclass(frozen=True)
 class RollingScene(Scene):
-    """Base of scenes of a body on fixed ground. The body's curve has the centre of mass as its origin."""
+    """Base class of scenes in which one body rolls on fixed ground.
+
+    The body's curve has the centre of mass as its origin.
+    """
 
     source: ClassVar[str] = "rolling of not round objects, (18.66)"
 
@@ -264,9 +267,9 @@ class DiscInHole(RollingScene):
 
 @dataclass(frozen=True)
 class SquareOnCatenaries(RollingScene):
-    """A square on the arch of a catenary; the square's centre moves on a level line until the corner.
+    """A square that rolls on an arch of a catenary. Its centre moves on a horizontal line.
 
-    At the corner the curvature is infinite, so the motion ends there with an error.
+    The curvature is infinite at a corner of the square, so the motion ends with an error when a corner touches.
     """
 
     name: ClassVar[str] = "square_on_catenary"
