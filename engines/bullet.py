@@ -43,9 +43,9 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-# The force limit [N, N m] of loop-closing constraints and motors. No constraint reaches it.
+# The force limit [N, N m] of loop-closing constraints and motors. No constraint reaches this limit.
 MAX_FORCE = 1e30
-# The engine's limit on the rate of a joint [rad/s]. No joint reaches it.
+# The engine's limit on the rate of a joint [rad/s]. No joint reaches this limit.
 RATE_LIMIT = 1e9
 # CPU time [s] of a step of three bodies with the settings as shipped. ITERATION_COST is for one iteration over one row.
 BULLET_STEP_COST = 9e-6
@@ -115,7 +115,7 @@ class Bullet(ExtraEngine):
         return BULLET_STEP_COST * over_three(mechanism) + ITERATION_COST * self.iterations * rows + forces
 
     def stricter(self, mechanism: Mechanism) -> Bullet | None:
-        """The method with twenty times as many iterations; None if no joint is a row of the solver."""
+        """The method with twenty times as many iterations, or None if no joint is a row of the solver."""
         if not spanning_tree(mechanism).loops and not any(isinstance(joint, Drive) for joint in mechanism.joints):
             return None
         return replace(self, iterations=20 * self.iterations, residual=0.0)

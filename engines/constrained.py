@@ -23,7 +23,7 @@ def constrained(rows: Array, right: Array, inertias: Array, free: Array, give: A
     """Solve J a = right - give give^T f and M (a - free) = J^T f for accelerations a and forces f.
 
     rows (rows, 3 bodies): the Jacobian J.
-    give (rows, any number): factor of the compliance matrix give give^T; None for rigid rows.
+    give (rows, any number): factor of the compliance matrix give give^T, or None for rigid rows.
     The solution uses the SVD of J M^(-1/2). The rounding error of the SVD is relative to the largest component of
     M^(1/2) a, so it is too large for a light body. Iterative refinement of both equations reduces the error (Skeel
     1980).

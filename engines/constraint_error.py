@@ -16,8 +16,8 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 
-# Largest number of instants of a motion at which gaps are evaluated. Few are enough, since large displacements grow
-# over many steps.
+# Largest number of instants of a motion at which gaps are evaluated. Few instants are enough, since large displacements
+# grow over many steps.
 INSTANTS = 100
 # Limit on rows * rows * coordinates * instants, since more would take seconds. A chain of a hundred links has no
 # instants.

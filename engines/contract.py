@@ -110,8 +110,8 @@ class ConvergenceOrder:
     """Expected convergence order of each error; EXACT (inf) where there is no discretisation error.
 
     order: order of the poses, and of each quantity below whose field is None.
-    rate, gap, slip, energy: order of this quantity.
-    reaction: order of the reactions; NaN if the engine provides no reactions.
+    rate, gap, slip, energy: orders of these quantities.
+    reaction: order of the reactions, or NaN if the engine provides no reactions.
     integrator: order of the integrator, if a regularisation that depends on the step determines the other orders.
     differences: 0 if the engine provides forces; otherwise reactions are changes of velocity over dt / differences.
     amplified: factor on the rounding errors of poses, velocities and energies in a combination of runs.
@@ -191,7 +191,7 @@ class Engine(ABC):
     precision: relative rounding of the engine's numbers; 0 for double precision.
     angle_error: error of the engine's angles between bodies, in addition to rounding [rad].
     forces_by: who evaluates the force elements.
-    capability: the joints and force elements that the engine builds; None for an engine without such a table.
+    capability: the joints and force elements that the engine builds, or None for an engine without such a table.
     """
 
     name: str
@@ -240,7 +240,7 @@ class Engine(ABC):
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement: ...
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """How the settings regularise the joints; None if the engine does not declare it."""
+        """How the settings regularise the joints, or None if the engine does not declare it."""
         return None
 
     def instants(
@@ -257,7 +257,7 @@ class Engine(ABC):
         return None
 
     def iterations_of(self, mechanism: Mechanism) -> int | None:
-        """The number of Gauss-Seidel iterations in the first step; None for an engine without such iterations."""
+        """The number of Gauss-Seidel iterations in the first step, or None for an engine without such iterations."""
         return None
 
     def stepped(self, mechanism: Mechanism) -> Engine:

@@ -297,7 +297,7 @@ class DrakePlant:
         self.simulator.AdvanceTo(self.steps * self.dt)
 
     def _advance(self, count: int) -> bool:
-        """Take steps; True if Drake raises an error."""
+        """Take steps, or True if Drake raises an error."""
         try:
             for _ in range(count):
                 self._step()

@@ -273,7 +273,7 @@ class ExtrapolatedRun(OneShot):
             return np.fmax.accumulate((estimate / self._unit).max(axis=(1, 2)))
 
     def _has_no_expansion(self, poses: Array, largest: Array) -> NDArray[np.bool_]:
-        """Whether the estimate exceeds the finest run's apparent error up to each time (times,); False for two runs."""
+        """Whether the estimate exceeds the finest run's apparent error up to each time (times,)."""
         if len(self._levels) < 3:
             return np.zeros(len(largest), dtype=bool)
         finer = combine(poses[-2:], extrapolation_weights(self._levels[-2:], self._powers[:1]))

@@ -98,7 +98,7 @@ class Exudyn(ExtraEngine):
         return EXUDYN_STEP_COST * size * (1.0 if self.sparse else max(1.0, size / 5) ** 2)
 
     def stricter(self, mechanism: Mechanism) -> Exudyn | None:
-        """The method with tolerances of Newton's method divided by 1000; None with `own_units`."""
+        """The method with tolerances of Newton's method divided by 1000, or None with `own_units`."""
         if self.own_units:
             return None
         return replace(self, relative=1e-3 * self.relative, absolute=1e-3 * self.absolute)

@@ -225,7 +225,7 @@ def _lacks_a_package(error: BaseException | None) -> bool:
 
 @functools.cache
 def _checkout() -> dict[str, Any] | None:
-    """The project table of our pyproject.toml; None if this is no checkout."""
+    """The project table of our pyproject.toml, or None if this is no checkout."""
     file = Path(__file__).resolve().parents[1] / "pyproject.toml"
     if not file.is_file():
         return None

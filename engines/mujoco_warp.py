@@ -119,7 +119,7 @@ class WarpModel:
     """A model of MuJoCo and its copy on the device."""
 
     def __init__(self, model: MuJoCoModel, tolerance: float) -> None:
-        """tolerance: the tolerance in the settings; `model` has it scaled by the inertia without drives"""
+        """tolerance: tolerance in the settings; in `model` it is scaled by the inertia without drives."""
         self.model, self.device = model, chosen_device()
         self.warp = load_warp(self.device)
         with quiet():

@@ -62,7 +62,7 @@ class Newton(ExtraEngine):
 
     solver: "kamino" or "xpbd".
     backend: backend of Kamino, "padmm", "dvi" or "lox".
-    alpha: fraction of a gap that a step of Kamino closes; LOX does not use it.
+    alpha: fraction of a gap that a step of Kamino closes; LOX does not use `alpha`.
     iterations: number of iterations of XPBD.
     """
 

@@ -255,7 +255,7 @@ class PinocchioModel:
         return Recorded(*states, stepping, self._inertias(), np.array(self.model.gravity.linear[:2]))
 
     def _inertias(self) -> Array:
-        """The model's inertias by body; NaN for welded bodies, since the model combines their inertias."""
+        """The model's inertias by body, or NaN for welded bodies, since the model combines their inertias."""
         inertias = [self.model.inertias[joint] for joint in self.joint_of]
         by_body = np.array([(inertia.mass, inertia.mass, inertia.inertia[2, 2]) for inertia in inertias])
         by_body[[self.joint_of.count(joint) > 1 or joint == 0 for joint in self.joint_of]] = np.nan

@@ -40,7 +40,7 @@ def extrapolation_weights(levels: tuple[Count, ...], powers: tuple[Count, ...]) 
 
 @validated
 def combine(values: Numbers, weights: Array) -> Array:
-    """The weighted sum of values (levels, ...); NaN if a value is not finite.
+    """The weighted sum of values (levels, ...), or NaN if a value is not finite.
 
     The sum is the finest value plus weighted differences from the finest value. If values are equal at all levels, as
     at t = 0, the sum has no rounding error.

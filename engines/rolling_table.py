@@ -61,7 +61,7 @@ class Rolled(Protocol):
     """
 
     def place(self, theta: float) -> Place:
-        """P, P' and P'' [m, m/rad, m/rad^2]; NaN outside the limits of rolling."""
+        """P, P' and P'' [m, m/rad, m/rad^2], or NaN outside the limits of rolling."""
         ...
 
     def arm(self, theta: float) -> complex:
@@ -84,7 +84,7 @@ def rolled(rolling: Rolling) -> Rolled:
 
 
 def _round(curve: Curve) -> tuple[complex, float] | None:
-    """Centre [m] and radius [m] of a disc or a hole, whose radius is negative; None for another curve."""
+    """Centre [m] and radius [m] of a disc or a hole, whose radius is negative, or None for another curve."""
     curve, shift, turn = unplaced(curve)
     if isinstance(curve, Circle | Ring):
         return shift + rect(1.0, turn) * complex(*curve.centre), curve.sense * curve.radius
@@ -231,7 +231,7 @@ class Table:
         return self._width
 
     def cells(self, first: int, count: int) -> NDArray[np.complex128]:
-        """The cells with the indices from `first` on (count, 20), see `_fitted`; NaN outside the limits."""
+        """The cells with the indices from `first` on (count, 20), see `_fitted`, or NaN outside the limits."""
         none = (NOWHERE,) * (3 + NODES + 2 * NODES - 1)
         for index in range(first, first + count):
             if index not in self._cells:

@@ -61,7 +61,7 @@ def quiet() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Recorded:
-    """The recorded states, in the mechanism's order of bodies and frame; NaN after the engine fails.
+    """The recorded states, in the mechanism's order of bodies and frame, or NaN after the engine fails.
 
     `inertias` (bodies, 3) [kg, kg, kg m^2] and `gravity` (2,) [m/s^2] are read from the engine's objects.
     """

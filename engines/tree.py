@@ -186,7 +186,7 @@ class Tree:
         return pose, twist, change
 
     def instant(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Poses and twists (bodies, 3) from tree coordinates and rates (coordinates,); NaN if a value is not finite.
+        """Poses and twists (bodies, 3) from tree coordinates and rates (coordinates,), or NaN if a value is not finite.
 
         Python floats are ten times as fast here as arrays in `motion`.
         """

@@ -1,8 +1,8 @@
 """Physics engines of the browser under test: planck and p2 in JavaScript, Rapier and Jolt as WebAssembly.
 
-A child process of Node runs `worlds.mjs`, which builds and steps the worlds. Node compiles code while it runs.
-Therefore the child lives as long as this process. Before the first run of each kind of mechanism, the child steps a
-trial world, which is not timed. `python -m engines.browser` installs the packages of npm into the user's cache folder.
+A child process of Node runs `worlds.mjs`, which builds and steps the worlds. Node compiles code during a run. Therefore
+the child lives as long as this process. Before the first run of each kind of mechanism, the child steps a trial world,
+which is not timed. `python -m engines.browser` installs the packages of npm into the user's cache folder.
 
 The adapter switches off damping, which removes 10 % (p2) or 5 % (Jolt) of the velocity per second as shipped. Bodies do
 not sleep or collide. A Pin is a revolute joint or a hinge, a Weld is a fixed joint, and a Rod is a distance joint. A
@@ -172,7 +172,7 @@ def joint_requests(mechanism: Mechanism, engine: str) -> list[dict[str, Any]]:
 
 
 def _fixed_angle(slot: Slot, drive: Drive | None, sign: float, engine: str) -> float | None:
-    """The relative angle [rad] that a slot keeps; None if the second body turns. Raises Unsupported."""
+    """The relative angle [rad] that a slot keeps, or None if the second body turns. Raises Unsupported."""
     if drive is None:
         if engine in ("rapier", "jolt"):
             raise Unsupported(f"joint {slot.name!r}: our adapter of {engine} builds no slot in which a body turns")

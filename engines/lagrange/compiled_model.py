@@ -61,7 +61,7 @@ class CellWindows:
                 self.move(number, rolling.theta)
 
     def move(self, number: int, theta: float) -> bool:
-        """Move a roll's window to a rotation [rad]; False if the table has no cell at this rotation."""
+        """Move a roll's window to a rotation [rad]; return whether the table has a cell at this rotation."""
         table, record = self._tables[number], self._records[number]
         if not isinstance(table, Table) or not abs(theta) < FARTHEST:
             return False

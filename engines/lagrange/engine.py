@@ -109,7 +109,7 @@ class Lagrange(Engine, Valid):
         return f"{self.integrator} {self.stabilisation}{adaptive}{slow}"
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """Baumgarte's critically damped spring and damper in each row; None for other methods."""
+        """Baumgarte's critically damped spring and damper in each row, or None for other methods."""
         if self.stabilisation != "baumgarte":
             return None
         rate = 1 / (BAUMGARTE_STEPS * dt)

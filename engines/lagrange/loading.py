@@ -65,7 +65,7 @@ class CompiledFunctions(NamedTuple):
 def compiled() -> CompiledFunctions:
     """The compiled functions; raises ImportError without numba."""
     config = import_module("numba").config
-    default, config.CACHE_DIR = config.CACHE_DIR, str(_cache_folder())  # read when functions are defined
+    default, config.CACHE_DIR = config.CACHE_DIR, str(_cache_folder())  # for the following definitions
     try:
         steps = import_module("engines.lagrange.compiled.steps")
         adaptive = import_module("engines.lagrange.compiled.adaptive")

@@ -107,7 +107,7 @@ class System(NamedTuple):
     forces: Records
     terms: Records  # terms of couplings, then terms of coupled forces
     rolls: Records
-    cells: NDArray[np.complex128]  # (cells, CELL_SIZE) of all tables
+    cells: NDArray[np.complex128]  # cells (cells, CELL_SIZE) of all tables
     rows: Records
     equations: Records  # (rows,).
     ends: Records  # Two ends of each row, further ends of couplings, and one unused end.
@@ -118,7 +118,7 @@ class System(NamedTuple):
     right: Reals  # (rows,) right side.
     reaction: Reals  # (rows,).
     residual: Reals  # (rows,).
-    change: Reals  # (coordinates,) M^-1 J^T reaction.
+    change: Reals  # M^-1 J^T reaction (coordinates,).
 
 
 class StepStorage(NamedTuple):

@@ -77,7 +77,7 @@ class LagrangeRun(OneShot):
             return Trajectory(t, poses, twists, reactions, stepping, warnings)
 
     def _motion(self, samples: int, every: int) -> tuple[Array, Array]:
-        """Poses and twists (samples + 1, bodies, 3); NaN after the last completed sample."""
+        """Poses and twists (samples + 1, bodies, 3), or NaN after the last completed sample."""
         if self._model is None:
             poses, twists = np.full((2, samples + 1, *self._mechanism.pose.shape), np.nan)
             poses[0], twists[0] = self._mechanism.pose, self._mechanism.twist
@@ -118,7 +118,7 @@ class LagrangeRun(OneShot):
             poses[sample + 1], twists[sample + 1] = pose, twist
 
     def _reactions(self, t: Array, poses: Array, twists: Array) -> tuple[Array, Array]:
-        """Reactions (samples, rows) and accelerations (samples, bodies, 3); NaN for states that are not finite.
+        """Reactions (samples, rows) and accelerations (samples, bodies, 3), or NaN for states that are not finite.
 
         Reactions of dependent rows are the minimum-norm solution, as in `Mechanism.reaction`.
         """

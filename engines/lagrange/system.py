@@ -44,7 +44,7 @@ from reference.rolling.roll import Roll
 from reference.rows import rank
 
 Integers = NDArray[np.int64]
-Numbers = Mapping[str | None, int]  # Numbers of bodies by name; None is the ground.
+Numbers = Mapping[str | None, int]  # Numbers of bodies by name; the ground has the key None.
 Fields = dict[str, str]  # Attributes of a joint or force by field of its record.
 
 JOINT_FIELDS: dict[type, tuple[JointKind, Fields]] = {

@@ -48,7 +48,7 @@ class UserRowJoint:
     first: str | None  # name of a body, or None for the ground
     second: str | None
     numbers: tuple[float, ...]
-    rolled: Rolled | None = None  # the position of the second body of a Roll as a function of its rotation
+    rolled: Rolled | None = None  # position of a Roll's second body as a function of the rotation
 
     @property
     def size(self) -> int:

@@ -43,7 +43,7 @@ def _add_damper(builder: ModelBuilder, force: Damper) -> None:
 def _add_angle_tendon(
     builder: ModelBuilder, force: TorsionSpring | TorsionDamper | Torque, sign: float = 1.0
 ) -> Any | None:
-    """Add a fixed tendon whose length is `sign` times the relative angle; None if the angle is constant."""
+    """Add a fixed tendon of the length `sign` times the relative angle; return None if the angle is constant."""
     factors = builder.tree.turning(force.first, force.second)
     scaled = {column: sign * factor for column, factor in factors.items()}
     return builder.add_fixed_tendon(_name(force), scaled) if factors else None

@@ -19,7 +19,7 @@ NO_ISLANDS = int(getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0))
 
 
 def known_fault(version: str) -> str:
-    """A sentence about the known fault of a release; "" if no fault is known.
+    """A sentence about the known fault of a release, or "" if no fault is known.
 
     The sources are the changelogs of 3.7.0 and 4.0.1, and github.com/google-deepmind/mujoco/issues/3767.
     """

@@ -78,7 +78,7 @@ class MuJoCoRun(OneShot):
     model: MuJoCoModel
     data: Any  # mujoco.MjData, which every step changes
     size: Size
-    # Builds a run with another step [s] for the error estimate; None if there is no estimate.
+    # Builds a run with another step [s] for the error estimate, or None if there is no estimate.
     with_step: Callable[[float], MuJoCoRun] | None = None
 
     @validated

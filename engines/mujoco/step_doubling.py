@@ -21,7 +21,7 @@ MAX_RATIO = 1 / 8  # largest ratio of successive differences that confirms at le
 
 @dataclass(frozen=True)
 class StepDoubling:
-    """Differences between the poses of runs with other steps and with steps h; NaN after a run fails."""
+    """Differences between the poses of runs with other steps and with steps h, or NaN after a run fails."""
 
     counts: Counts  # The numbers (times,) of steps h before each pose, which contain both neighbours of an odd number.
     watched: Counts  # Indices of even counts at which the order is checked.

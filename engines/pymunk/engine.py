@@ -92,7 +92,7 @@ class Pymunk(Engine, Valid):
         return declared.enforcement(self, joint, mechanism)
 
     def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
-        """The regularisation for steps of dt [s]; None if all rows are at the pose after the drift and correct the
+        """The regularisation for steps of dt [s], or None if all rows are at the pose after the drift and correct the
         whole gap.
 
         A step removes all slip and corrects a fraction of each gap. Rows at the pose before the drift lack J_dot v.

@@ -37,7 +37,7 @@ def roll_equations(system, roll, number, first, second, row):
 
 @merged
 def contact(system, roll, number, theta):
-    """P, P', P'', the tangent e_t and its rotation per radian, in the first body's frame; NaN without a cell."""
+    """P, P', P'', the tangent e_t and its rotation per radian, in the first body's frame, or NaN without a cell."""
     turn = complex(math.cos(theta), math.sin(theta))
     if roll.form == RollingForm.ON_LINE:
         out = turn * roll.middle

@@ -83,7 +83,7 @@ def _add_contacts(builder: ModelBuilder, rolls: Sequence[Roll], by: RollContact)
             geomname1=_add_shape(builder, roll, roll.first, roll.rolling.ground),
             geomname2=_add_shape(builder, roll, roll.second, roll.rolling.body),
             condim=3,
-            friction=[by.friction, by.friction, 0.005, 0.0001, 0.0001],  # condim 3 uses two values
+            friction=[by.friction, by.friction, 0.005, 0.0001, 0.0001],  # condim 3 uses the first two values
             solref=list(reference),
             solimp=list(impedance),
             margin=TOUCH * builder.mechanism.length_scale,

@@ -1,6 +1,6 @@
 """Constructions of a skate, for which MuJoCo has no joint. `SkateBy` is the construction:
 
-- "blade": a capsule that touches a plane, with friction across the capsule. MuJoCo's maintainers suggest this.
+- "blade": a capsule that touches a plane, with friction across the capsule. MuJoCo's maintainers suggest a capsule.
 - "predicted tendon": a fixed tendon whose coefficients are the row of the skate. Our code computes the coefficients
   before every step, for the pose that the velocity predicts at the end of the step.
 - "rows": a row for the skate that a callback writes in every stage.

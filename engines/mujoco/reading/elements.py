@@ -184,7 +184,7 @@ def angle_weights(planar: PlanarModel, parts: WeightedJoints) -> dict[int, float
 
 
 def wrapped_joints(model: Any, tendon: int) -> list[tuple[int, float]] | None:
-    """The joints and coefficients of a fixed tendon; None for a spatial tendon."""
+    """The joints and coefficients of a fixed tendon, or None for a spatial tendon."""
     wraps = range(int(model.tendon_adr[tendon]), int(model.tendon_adr[tendon] + model.tendon_num[tendon]))
     if np.any(model.wrap_type[wraps] != int(mujoco.mjtWrap.mjWRAP_JOINT)):
         return None

@@ -264,7 +264,7 @@ class OwnMuJoCo:
         return Trajectory(t, pose, twist, reaction, stepping, warnings, reset_at)
 
     def _read(self, model: Any, qpos: Array, qvel: Array, count: int) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (count, bodies, 3) of the states; NaN after the last state."""
+        """Poses, twists and accelerations (count, bodies, 3) of the states, or NaN after the last state."""
         pose, twist, acceleration = np.full((3, count, len(self.mechanism.bodies), 3), np.nan)
         data = self._own_start(model)
         if len(qpos):

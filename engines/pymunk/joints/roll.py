@@ -36,7 +36,7 @@ def _shipped() -> tuple[float, float]:
     return space.collision_slop, space.collision_bias
 
 
-SHIPPED_SLOP, SHIPPED_BIAS = _shipped()  # 0.1, 0.9 ** 60.
+SHIPPED_SLOP, SHIPPED_BIAS = _shipped()  # The values are 0.1 and 0.9 ** 60.
 GROUND_HALF_LENGTH = 1e3  # Half the length of flat ground, in multiples of `extent_of`.
 
 

@@ -114,7 +114,7 @@ def _add_body(out: ImportedSpace, body: pymunk.Body) -> None:
         if body.velocity.length:
             raise refuse(name, "a kinematic body that travels has no ideal counterpart here; it may turn about a place")
         pose = (float(body.position.x), float(body.position.y), float(body.angle))
-        out.bodies.append(Body(name, 1.0, 1.0, pose, (0.0, 0.0, rate)))  # its mass has no effect
+        out.bodies.append(Body(name, 1.0, 1.0, pose, (0.0, 0.0, rate)))  # the mass has no effect
         pin, drive = out.names.new(f"{name} stays"), out.names.new(f"{name} turns")
         out.joints += [Pin(pin, None, name, pose[:2], (0.0, 0.0)), Drive(drive, None, name, rate, pose[2])]
         out.prescribed += [pin, drive]

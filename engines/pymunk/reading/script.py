@@ -43,7 +43,7 @@ class ScriptSpace:
     """The space that a script makes, before its first step.
 
     `dt` [s]: argument of the script's calls of `space.step`, or None if there are no calls. `parts`: number of steps in
-    a call; `rewritten` may divide steps. `line`: settings can be inserted before this line; None for the end of the
+    a call; `rewritten` may divide steps. `line`: settings can be inserted before this line, or None for the end of the
     script. `name`: name of the space at this line, or of the function that makes the space. `ahead`: whether the first
     step is a half step that advances the velocities; the space is then in the state before this step.
     """
@@ -66,7 +66,7 @@ class _SpaceStepped(BaseException):
 
 
 def run_script(path: Path, file: str, name: str) -> ScriptSpace:
-    """The space that a script calls `name`, or that a function of this name returns; "" for the only space.
+    """The space that a script calls `name`, or that a function of this name returns; by default its only space.
 
     The script ends before it steps the space, and its output is discarded. If joints correct the whole gap, the first
     step may be a half step that advances the velocities. The script is then run again up to the second step. If the
