@@ -47,7 +47,7 @@ NAMES_LISTED = 6  # Largest number of elements that a sentence names.
 COMPARED_SAMPLES = 200  # Approximate number of compared instants.
 OBSTACLE_CHECKS = 10  # Largest number of obstacle checks between two samples.
 APPLY_MARGIN = 1.1  # If the error exceeds the expected error by this factor, some settings had no effect on the model.
-QUICK_TOLERANCE = 1e-9  # Relative tolerance of the declared motion with --quick. Errors then have two correct digits.
+QUICK_TOLERANCE = 1e-9  # Relative tolerance of the declared motion with --quick, enough for errors of two digits.
 Array = NDArray[np.float64]
 
 

@@ -36,7 +36,7 @@ class Picture:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
-    """A run of an engine and its errors. `print` shows a table. A notebook also shows figures."""
+    """A run of an engine and the errors of the run. `print` shows a table, and a notebook also shows figures."""
 
     mechanism: Mechanism
     engine: Engine

@@ -18,7 +18,7 @@ NEARLY_SINGULAR = 1e-2  # A position is near-singular if the smallest singular v
 RANK_TOLERANCE = 1e-9  # A singular value below this share of the largest one counts as zero.
 SVD_NUMBERS = 2e7  # Largest number of matrix elements in all samples together.
 DIFFERENCE_STEP = 1e-6  # Step of finite differences, relative to the length and the time scale of the mechanism.
-MOST_DIRECTIONS = 60  # With more free directions the eigenvalues are not computed.
+MOST_DIRECTIONS = 60  # Largest number of free directions for which the eigenvalues are computed.
 
 
 @dataclass(frozen=True)

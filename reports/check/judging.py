@@ -77,7 +77,7 @@ def soft_motion(
 LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # A second run, whose difference estimates the error of the reference motion.
 JUDGE_SHARE = 0.1  # Largest estimated error of the reference motion, relative to the user's tolerance.
 ALONG_CURVE_TOLERANCE = 1e-12  # Relative error of a step along the configuration curve of a mechanism with one freedom.
-LOOSER_CURVE_TOLERANCE = 1e-11  # Tolerance of a second run along the curve. The difference estimates the error.
+LOOSER_CURVE_TOLERANCE = 1e-11  # Tolerance of a second run along the curve, which estimates the error.
 DISTURBANCE = 1e-7  # Initial disturbance relative to length and speed, small enough for linear growth.
 LINEAR_LIMIT = 1e-2  # A disturbance above this size, relative to length and speed, does not grow linearly.
 # (seed, size) of two disturbances. A motion is chaotic if both disturbances grow exponentially.
@@ -92,7 +92,7 @@ class IdealMotion:
     """The ideal motion, and its sensitivity to the initial state."""
 
     trajectory: Trajectory
-    looser: Trajectory  # The same motion with a larger tolerance. The difference estimates the error.
+    looser: Trajectory  # The same motion with a larger tolerance. The difference of both motions estimates the error.
     growth: Array  # Growth factor (times,) of a small disturbance of the initial state.
     horizon: float  # Time [s] after which small disturbances grow exponentially; the duration if they do not.
     cut: bool = False  # Whether the motion ends early because the estimated error becomes too large.

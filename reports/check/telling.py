@@ -15,7 +15,7 @@ from reports.check.settings import SATURATED_ERROR, SettingRun, pareto_front
 from reports.write import tables
 
 NOTES_LISTED = 4  # Largest number of notes on elements in the short report.
-CHEAPER_COST = 0.9  # Above this share of the user's CPU time, a difference may be noise of the clock.
+CHEAPER_COST = 0.9  # A CPU time above this share of the user's CPU time may differ only by noise of the clock.
 BETTER_ERROR = 0.9  # The first screen leaves out a setting whose error exceeds this share of the previous row's error.
 CUT_NOTE = (
     "; beyond {:.3g} s the judge itself does not know it to a tenth of the tolerance, so nothing is compared there"

@@ -18,7 +18,7 @@ from reports.pages.atlas.subjects import MAPS
 from reports.run import cluster
 from reports.run.running import run_into
 
-MAP_LIMIT = 600.0  # Limit of CPU seconds for one cell. All known cells need far less.
+MAP_LIMIT = 600.0  # Limit of CPU seconds for one cell. All known cells need far less time.
 STRIDE = 4  # Every fourth step is run first. Steps between two equal outcomes are left out.
 SMALL = 16  # Maps with fewer points along a side are run completely.
 VARIANTS_SHOWN = ("default", "tuned")

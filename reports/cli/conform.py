@@ -154,7 +154,7 @@ def _answers(
         for question, results, earlier in supervise(ask, questions, limit, workers=1):
             members = _of_check(every, question.check)
             if isinstance(results, Loss):
-                note = Path(notes, question.check)  # The case that was running.
+                note = Path(notes, question.check)  # The case that ran when the worker ended.
                 case = members[int(note.read_text(encoding="utf-8"))] if note.is_file() else members[0]
                 start = "It" if results.outcome == Outcome.TIMED_OUT else "Its process was lost:"
                 answers[question.check] = [_failed(case, f"{start} {results.sentence}")]

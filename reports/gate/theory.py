@@ -73,7 +73,7 @@ ROOM_PRESCRIBED = 1.25
 # Number of coarser steps that are needed to predict an error. At a single step two errors may cancel.
 ENOUGH = 2
 # Without a declared order an error may be this many times the difference between the errors at the method's steps. If
-# the step has a smaller effect, the model is a different one.
+# the step has a smaller effect, the model has an error that does not depend on the step.
 ROOM_UNPROMISED = 20.0
 # An error without a declared order passes if it is below this fraction of the largest comparable error. Small errors at
 # two steps may be equal by chance.

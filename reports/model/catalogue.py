@@ -68,7 +68,7 @@ def page_of(scene: Scene, pages: Sequence[Page] | None = None) -> Page | None:
 
 
 def generic_page(scene: Scene, engines: Sequence[Engine], taken: Iterable[str] = ()) -> Page:
-    """A page that shows all rows of a scene. The name of its document is different from those in `taken`."""
+    """A page that shows all rows of a scene. The name of the document is none of the names in `taken`."""
     stem = NO_FILE_NAME.sub("_", scene.name)[:LONGEST_NAME].strip("_.") or "scene"
     summary = " ".join((type(scene).__doc__ or "").split("\n\n")[0].split())
     page = Page(stem, scene.name, summary or f"From {scene.source}.", (scene,), tuple(engines))

@@ -159,7 +159,7 @@ def _connected(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, timeout=WAIT)
     connection.text_factory = lambda raw: raw.decode(errors="replace")
     try:
-        # With synchronous=full each row would wait 5 to 10 ms for the disk. No worker would get a job meanwhile.
+        # With synchronous=full each row would wait 5 to 10 ms for the disk, and meanwhile no worker would get a job.
         connection.execute("pragma synchronous=normal")
         wrong = connection.execute("pragma integrity_check(1)").fetchone()[0]
         if wrong != "ok":

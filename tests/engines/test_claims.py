@@ -67,7 +67,7 @@ def test_a_motion_is_unresolved_before_its_displacement_exceeds_the_claim(engine
 
 
 def test_reactions_that_a_displacement_changes_are_reported():
-    # The errors of both poses are within the claim. With the small miss this error changes the strut's force by some
+    # The errors of both poses are within the claim. If the miss is small, this error changes the strut's force by some
     # percent.
     for miss, is_reported in ((5e-6, True), (1e-3, False)):
         linkage = toggle(miss)

@@ -95,7 +95,7 @@ def test_a_consistent_start_is_not_changed():
 )
 def test_contradictory_motor_rates_are_refused_in_one_line(rates, named):
     space, bars = linkage(A, B, C, D)
-    if len(rates) == 1:  # With this pivot it is a truss without freedom.
+    if len(rates) == 1:  # With this pivot the chain is a truss without freedom.
         space.add(PivotJoint(space.static_body, bars[0], B))
     space.add(*[SimpleMotor(space.static_body, bars[0], rate) for rate in rates])
     with pytest.raises(InvalidMechanism, match="no velocities satisfy") as refused:

@@ -47,7 +47,7 @@ def value(terms, bodies=BODIES):
 
 
 def held(terms=TERMS, *forces):
-    """A mechanism with the four bodies. Their velocities are compatible with the coupling."""
+    """A mechanism with the four bodies, whose velocities are compatible with the coupling."""
     free = Mechanism(BODIES, (), (0.2, -9.81))
     loose = replace(free, bodies=tuple(replace(body, twist=(0.0, 0.0, 0.0)) for body in BODIES))
     row = replace(loose, joints=(Coupling("sum", terms, value(terms)),)).rows(free.pose)[0]

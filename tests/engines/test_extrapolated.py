@@ -109,8 +109,8 @@ def test_errors_in_the_removed_powers_vanish():
     assert min(errors(inner)) > 1e-2
     assert max(errors(run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), (2, 3))))) < 1e-13
     exact = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3, 4), (2, 3, 4)))
-    assert present(exact.estimate).max() < 1e-12  # rounding of all steps
-    # With the powers (2, 4) the term 2 t dt^3 causes an error of 2 * 3 * 1e-3 / 60. With other powers it is larger.
+    assert present(exact.estimate).max() < 1e-12  # The bound is rounding of all steps.
+    # With the powers (2, 4) the term 2 t dt^3 causes an error of 2 * 3 * 1e-3 / 60. Other powers cause larger errors.
     for powers in ((2, 4), (1, 3), (3, 4)):
         extrapolated = run(Extrapolated(SeriesToy(), "extended", (1, 2, 3), powers))
         assert min(errors(extrapolated)) > 0.9e-4

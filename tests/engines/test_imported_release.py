@@ -65,7 +65,7 @@ def test_builds_and_additions_to_another_package_are_accepted(tmp_path, answer):
     # For example, mujoco-mjx adds the folder mujoco/mjx to the package of mujoco-core.
     distribution(tmp_path, NAME, "1.17.0", "2.0.1", listed="more/__init__.py")
     distribution(tmp_path, "core", "2.0.1+patched", "2.0.1")
-    (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # The author has changed it since.
+    (tmp_path / NAME / "__init__.py").write_text("__version__ = '2.0.1' \n")  # The author has changed the file since.
     assert answer(tmp_path) == ""
 
 

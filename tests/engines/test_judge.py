@@ -88,8 +88,9 @@ def test_without_bias_a_regularised_joint_has_the_gap_of_the_centripetal_acceler
     mechanism = TurningDisc().mechanism()
     run = integrate(TurningDisc(), 4, 2, Regularisation(2500.0, 100.0, 0.0, (True, True), complete))
     opened = np.hypot(*mechanism.gap(run.pose[-1], run.t[-1]))
-    # The centripetal acceleration is 0.1 m * 4 rad^2/s^2. Without the bias the spring of 2500 s^-2 provides it. The gap
-    # turns with the disc at 2 rad/s, so the damper of 100 s^-1 acts perpendicular to it with 8 % of the stiffness.
+    # The centripetal acceleration is 0.1 m * 4 rad^2/s^2. Without the bias the spring of 2500 s^-2 causes this
+    # acceleration. The gap turns with the disc at 2 rad/s, so the damper of 100 s^-1 acts perpendicular to it with 8 %
+    # of the stiffness.
     assert opened == pytest.approx(0.0 if complete else 0.4 / np.hypot(2500, 200), rel=1e-2, abs=1e-7)
 
 

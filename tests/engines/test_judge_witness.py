@@ -1,4 +1,4 @@
-"""Comparison of the judge with the witness, an independent solution, in random mechanisms.
+"""Comparison of the judge with an independent solution, the witness, in random mechanisms.
 
 The witness shares no code with `engines.lagrange` or `Mechanism.rows`, and integrates Newton's law with multipliers by
 scipy. A row contains the relative velocities of two points for a unit rate of each coordinate, as in chapter 18. The
@@ -23,7 +23,7 @@ from reports.search.mechanisms import mechanism as random_mechanism
 from reports.search.parts import ALL_KINDS
 
 H = 1e-30  # Size of a complex step.
-MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # Resolved motions need 500 and 30,000.
+MOST_EVALUATIONS = {"DOP853": 3_000, "Radau": 60_000}  # Resolved motions need 500 and 30,000 evaluations.
 WITNESSED_KINDS = tuple(kind for kind in ALL_KINDS if kind != "roll")
 
 
@@ -140,7 +140,7 @@ class Witness:
         return solution[:n].reshape(-1, 3), solution[n:]
 
     def motion(self, t: Any, method: str = "DOP853", tolerance: float = 1e-13) -> tuple[Any, Any]:
-        """Poses and twists (times, bodies, 3). There are fewer times if the integrator fails.
+        """Poses and twists (times, bodies, 3), with fewer times if the integrator fails.
 
         Raises ArithmeticError after MOST_EVALUATIONS evaluations, since rounding then exceeds the tolerance.
         """

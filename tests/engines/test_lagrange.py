@@ -80,7 +80,7 @@ def test_fixed_steps_report_a_singular_position_or_a_diverged_motion(method):
 @pytest.mark.parametrize(("gyration", "is_closed"), [(1.0, True), (1e-6, False)])
 @pytest.mark.parametrize("method", ["euler none", "rk4 baumgarte", "dop853 projection"])
 def test_a_row_that_is_lost_by_rounding_is_reported(method, gyration, is_closed):
-    # The body is 2.5 km from its pin. The ratio of the eigenvalues of its rows is (gyration / arm)^2.
+    # The body is 2.5 km from its pin. The ratio of the eigenvalues of the pin's rows is (gyration / arm)^2.
     c, s = np.cos(0.7), np.sin(0.7)
     light = Body("light", 1.0, gyration**2, (0.0, 0.0, 0.7), (82 * c, 82 * s, 0.03))
     rate = (82 * 2 + 2500 * 0.03) / -500
@@ -124,7 +124,7 @@ def test_constrained_acceleration_satisfies_newtons_law_and_the_rows():
     twist, rows = random.normal(size=mechanism.twist.shape), mechanism.rows(pose)
     soft = np.arange(mechanism.row_count) % 3 == 0
     inertia = inverse_inertia((rows / mechanism.inertias.reshape(-1)) @ rows.T, soft)
-    # A unit force acts in the soft row 0. Its acceleration is computed with the constraints of the rigid rows.
+    # A unit force acts in the soft row 0. The acceleration is computed with the constraints of the rigid rows.
     rigid = np.delete(rows, np.flatnonzero(soft), axis=0) / np.sqrt(mechanism.inertias.reshape(-1))
     push = rows[0] / np.sqrt(mechanism.inertias.reshape(-1))
     push = push - rigid.T @ np.linalg.lstsq(rigid.T, push, rcond=None)[0]

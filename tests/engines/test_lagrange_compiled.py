@@ -122,7 +122,7 @@ def test_numpy_completes_a_run_if_a_table_has_no_cell(monkeypatch):
 
 @pytest.mark.parametrize("compiled", [True, False])
 def test_a_run_ends_with_a_warning_if_the_tolerance_needs_too_many_steps(compiled, monkeypatch):
-    monkeypatch.setattr("engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200)  # numpy ends sooner
+    monkeypatch.setattr("engines.lagrange.dynamics.MOST_NUMPY_STEPS", 200)  # Numpy ends sooner.
     # A bar of 1e-12 m under a large gravity has a very short period, so many steps are needed.
     fast = replace(pendulum(length=1e-12), gravity=(0.0, -1e6))
     hopeless = Lagrange(tolerance=1e-14, compiled=compiled).build(fast, 1.0)(2, 1)

@@ -162,7 +162,7 @@ OF_PYMUNK = (
     # The errors of the first steps have no expansion in the step, so the first reactions are not checked.
     *on(pymunk.EXTENDED, ROLLING, 3, pose=1e-11, reaction=1e-8, since=2),
     *on(methods.ROLL_PIVOT, ROLLING[:2], order=(2,), room=0.2),
-    # The error is 3e-11. If the contact were predicted for a ground at rest, it would be 7e-10.
+    # The error is 3e-11. If the contact were predicted for a ground at rest, the error would be 7e-10.
     Row(pymunk.EXTENDED, EllipticGears(), pose=1e-10, span=2.0),
     Row(methods.SKATE_PROJECTED, SLEIGH, order=(1,), span=3.0),
     Row(methods.SKATE_GROOVE, SLEIGH, order=(1,), span=3.0),
@@ -182,7 +182,7 @@ OF_PYMUNK = (
     Row(pymunk.EXTENDED, rod_in_a_slot(), pose=1e-10, reaction=1e-6),
     *on(pymunk.EXTENDED, (BEAD, TRAMMEL), 5, pose=1e-9, reaction=1e-5),
     Row(pymunk.EXTENDED, LinkPendulum(), 5, pose=6e-12, reaction=1e-6, span=1.0),
-    # Heavy bodies on light bodies need more iterations. The usual rule provides them.
+    # Heavy bodies on light bodies need more iterations, which the usual rule provides.
     Row(pymunk.LEAPFROG, OneFoot(), 3, pose=1e-3),
     Row(pymunk.Pymunk("five sweeps", iterations=5, error_bias=0.0, leapfrog=True), OneFoot(), floor=0.1),
 )
@@ -225,7 +225,8 @@ OF_MUJOCO = (
     *on(SLOTS[0], (SlottedLever(),), order=(2,), room=0.3),  # The slot's spring depends on the step.
     # The rows are dependent at about 0.7 s, when all bars are in line.
     Row(mujoco.EXTENDED, NFourBar(), pose=1e-6, span=1.5),
-    # After 10 ms the error at order 1 is a dt^2 / 2 for each step. In default loops it comes from the regularisation.
+    # After 10 ms the error at order 1 is a dt^2 / 2 for each step. In default loops the error comes from the
+    # regularisation.
     *on(mujoco.DEFAULT, CHAINS, pose=5e-3, span=0.01),
     *on(FREE_COORDINATES, CHAINS, pose=1e-5, span=0.01),
 )
@@ -289,7 +290,7 @@ REFUSED = (
         for engine in (methods.SKATE_CENTRE, methods.SKATE_PROJECTED)
     ),
     *((engine, blade_on_a_board(), "runs on the body 'board'") for engine in (mujoco.DEFAULT, BLADE)),
-    # The body is a crank, or has no pin and only moves with a drive.
+    # A crank with two drives, and a body without a pin with two drives.
     *(
         (pymunk.TUNED, twice_driven(*pins), "'second' joins two bodies whose motion is already")
         for pins in ((HUB,), ())

@@ -77,7 +77,7 @@ def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone:
 
 
 # For some trees with branches, the Newton solver of release 4.0.0 computed wrong accelerations without a warning. The
-# sparse Cholesky factor of its Hessian was wrong (changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767).
+# sparse Cholesky factor of the Hessian was wrong (changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767).
 
 # Largest difference of dense and sparse accelerations due to rounding, relative to the largest acceleration.
 AGREEMENT = 1e-8

@@ -1,6 +1,6 @@
 """Tests that MuJoCo Warp moves like MuJoCo to single precision, and tests of statements in its adapter.
 
-On a new computer Warp compiles its kernels for minutes, so the tests that run it are marked as slow.
+On a new computer Warp compiles its kernels for minutes, so the tests that run Warp are marked as slow.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ ENGINES = [Mine("euler", "projection"), Mine("rk4", "projection")]
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """An empty current folder. Afterwards its entry in sys.path and the modules imported from it are removed."""
+    """An empty current folder. Afterwards sys.path and the imported modules are restored."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     loaded = set(sys.modules)
@@ -266,4 +266,4 @@ def test_a_run_into_a_file_prints_its_progress(monkeypatch, capsys):
         now[0] += PULSE
         watch([])
     assert capsys.readouterr().out.splitlines() == ["3 of 7 cells run after 12 s", "3 of 7 cells run after 22 s"]
-    assert len(checked) == 7  # Each time it is checked whether Ctrl-C was pressed.
+    assert len(checked) == 7  # Every call checks whether Ctrl-C was pressed.

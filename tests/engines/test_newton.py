@@ -1,6 +1,6 @@
 """Tests of Newton's solver Kamino against the judge, of refusals, and of statements in the adapter.
 
-On a new computer Warp compiles its kernels for minutes, so the tests that run it are marked as slow.
+On a new computer Warp compiles its kernels for minutes, so the tests that run Warp are marked as slow.
 """
 
 from __future__ import annotations

@@ -144,7 +144,7 @@ def test_exudyns_motion_does_not_depend_on_units():
 
 
 def test_exudyns_error_does_not_depend_on_the_mass_ratio():
-    # A body of 2e-11 kg m^2 on a body of 0.8 kg m^2 had an error of 6e-7, since its forces were below the tolerance.
+    # A body of 2e-11 kg m^2 on a body of 0.8 kg m^2 had an error of 6e-7, since the forces were below the tolerance.
     from engines.exudyn import EXTENDED
 
     shipped("exudyn")
@@ -301,7 +301,7 @@ def test_a_missing_device_is_refused_in_one_line():
 
 
 def geared(arm: float, light: float, wheel: float, gravity: tuple[float, float]) -> Mechanism:
-    """A pendulum of 2 g with a gear to a free body of 20 t. `light` and `wheel` are their inertias [kg m^2]."""
+    """A pendulum of 2 g with a gear to a free body of 20 t. `light` and `wheel` are the inertias [kg m^2]."""
     bodies = Body("pendulum", 2e-3, light, (0.0, 0.0, 0.0)), Body("free", 2e4, wheel, (0.0, 0.0, 0.0))
     pin = Pin("pin", None, "pendulum", (arm, -arm), (arm, -arm))
     return Mechanism(bodies, (pin, Gear("gear", "pendulum", "free", 2.0, 0.0)), gravity=gravity)
@@ -328,7 +328,8 @@ def test_forces_of_loops_follow_from_the_compliance_without_the_velocity_term():
         soft = present(MJX_TUNED.regularisation(now, 1e-3))
         model = MJX_TUNED.settings.model(now, 1e-3)
         declared = np.zeros(now.row_count)
-        # The third row of a connect constraint is normal to the plane. Masses in the model have a unit.
+        # The third row of a connect constraint is normal to the plane. The masses in the model have the unit
+        # `model.unit`.
         declared[np.flatnonzero(soft.rows)] = model.start().efc_R[:2] / model.unit
         run = MJX_TUNED.build(now, 1e-3)(1, 1).reaction[0]
         largest = np.abs(run).max()

@@ -100,7 +100,7 @@ CONFIGURATIONS = {
     ),
 }
 MECHANISMS = {**ALONE, "all": ALL, "all damped": DAMPED, **CONFIGURATIONS}
-# Sets of elements. BUILDS contains the elements that an extra engine builds, or a method that builds fewer elements.
+# Sets of elements. BUILDS contains the elements that an engine or a method builds.
 PINNED = {
     *("torsion spring", "torsion damper", "torque", "force", "weld", "weld to the ground", "two forces on a body")
 }
@@ -156,8 +156,8 @@ def missed(engine: Engine, own: Mechanism, name: str, every: int) -> float:
     return float((np.abs(run.pose - exact(name)) / own.pose_unit).max())
 
 
-# Extra engines need not solve loops with redundant rows. Daily tests run a third of the mechanisms in each engine. In
-# further variants of extra engines they run a ninth.
+# Extra engines need not solve loops with redundant rows. Daily tests run a third of the mechanisms in each engine, and
+# a ninth in further variants of extra engines.
 CELLS = [
     pytest.param(
         engine, name, marks=() if (place + number) % (9 if engine in FURTHER else 3) == 0 else pytest.mark.slow
@@ -220,7 +220,8 @@ UNITS = [(2.0**-10, 1.0), (1.0, 1e6)]
 def test_methods_do_not_depend_on_units_of_length_and_mass(engine: Engine, name: str) -> None:
     linkage = in_units(engine, name)
     for length, mass in UNITS:
-        # A stiff spring amplifies rounding. Reactions are changes of velocity over 1e-4 s, which amplifies it too.
+        # A stiff spring amplifies rounding. Reactions are changes of velocity over 1e-4 s, which also amplifies
+        # rounding.
         for changed, right, allowed in zip(
             in_units(engine, name, length, mass), linkage, (1e-9, 1e-9, 1e-6), strict=True
         ):

@@ -34,7 +34,7 @@ SLIDER = DrivenSliderCrank().mechanism()
 
 
 def slot_off_the_centre() -> Mechanism:
-    """A slider in a slot. Its point in the slot is not its centre of mass, so the force of the slot turns it."""
+    """A slider in a slot. The force of the slot turns the slider, since it does not act at the centre of mass."""
     joints = [joint for joint in SLIDER.joints if not (isinstance(joint, Drive) and joint.turning_rate == 0)]
     moved = (replace(joint, second_point=(0.1, 0.0)) if isinstance(joint, Slot) else joint for joint in joints)
     return replace(SLIDER, joints=tuple(moved))

@@ -79,7 +79,8 @@ def test_a_crank_turns_about_its_pin_whichever_body_is_first(grounded_first):
     mechanism = Mechanism((body,), joints, (0.0, -9.81))
     for method in METHODS:
         trajectory = method.build(mechanism, 1e-2)(30, 3)
-        # The bound is rounding. The angle is a sum of at most 720 steps, and extrapolation amplifies it up to 100-fold.
+        # The bound is rounding. The angle is a sum of at most 720 steps, and extrapolation amplifies rounding up to
+        # 100-fold.
         assert largest(mechanism.gap(trajectory.pose, trajectory.t)) < 1e-12
         assert largest(mechanism.slip(trajectory.pose, trajectory.twist)) < 1e-12
         # The pin carries weight and centripetal force. The drive carries the moment of the weight about the pin.
@@ -91,8 +92,8 @@ def test_a_crank_turns_about_its_pin_whichever_body_is_first(grounded_first):
         error = np.abs(trajectory.reaction[:, order] - np.column_stack([force, torque]))
         assert error[1:].max() < 1e-9  # This is rounding.
         # The first reaction is the reaction of the third step, at which the angle differs by 0.09 rad. LEAPFROG
-        # extrapolates it from the third and fourth steps, with an error of 6 (rate dt)^2. EXTENDED extrapolates it to
-        # step zero.
+        # extrapolates the reaction from the third and fourth steps, with an error of 6 (rate dt)^2. EXTENDED
+        # extrapolates the reaction to step zero.
         assert error[0].max() < {DEFAULT: 0.09, TUNED: 0.09, LEAPFROG: 6e-3, EXTENDED: 1e-9}[method] * 2.0 * 9.81
 
 
@@ -260,7 +261,8 @@ def test_a_run_ends_with_a_warning_where_the_curves_lose_contact():
 @pytest.mark.parametrize("step", [1e-3, 3e-4])
 def test_the_first_force_of_a_contact_is_converged(step):
     run, truth = TUNED.build(DISC.mechanism(), step)(1, 1), DISC.motion(np.array([0.0]))
-    # The error has order 1 and is 1.4e-3 of the force at a step of 1 ms. Five iterations would give half of the force.
+    # The error has order 1 and is 1.4e-3 of the force at a step of 1 ms. With five iterations the error would be half
+    # of the force.
     assert largest(run.reaction[0] - truth.reaction[0]) < 3e-3 * largest(truth.reaction[0])
 
 

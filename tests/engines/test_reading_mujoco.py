@@ -1,4 +1,4 @@
-"""Tests of the reader for MuJoCo models. An element has equal accelerations, or a refusal names the element."""
+"""Tests of the reader for MuJoCo models. Accelerations agree with the model, or a refusal names the element."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ CONNECT_EQUALITY = '<connect name="C" body1="coupler" body2="rocker" anchor=".8 
 
 
 def model_of(bodies, more="", option="", turned=""):
-    """A model without contact. Its joints turn about y by default. turned: attributes of a body around the model."""
+    """A model without contact, whose joints turn about y by default. turned: attributes of a body around the model."""
     inside = f'<site name="post" pos=".2 0 .9"/>{bodies}'
     inside = f"<body {turned}>{inside}</body>" if turned else inside
     return mujoco.MjModel.from_xml_string(f"""

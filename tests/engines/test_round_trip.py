@@ -189,7 +189,7 @@ def test_a_weld_is_exported_as_a_fixed_joint_of_urdf():
     np.testing.assert_allclose(data.qpos, [turned[0], turned[1] - turned[0]], rtol=0, atol=1e-7)
 
 
-IN_HALVES = random_mechanism(3, 2, ("pin", "slot"))  # A loop with a slot. Its body is split and welded.
+IN_HALVES = random_mechanism(3, 2, ("pin", "slot"))  # A loop with a slot, whose body is split and welded.
 BY_CONTACT = ("sleigh", "cart", "rolling_ellipse")
 
 

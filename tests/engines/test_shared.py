@@ -74,7 +74,7 @@ def test_poses_contacts_and_arms_equal_the_reference_to_rounding(rolling: Rollin
     place, first, second = np.array(list(map(rolled(rolling).place, theta.tolist()))).T
     rate = np.ones_like(theta)
     # The tolerances are several rounding errors of lengths of about 1 m. In a hole the contact turns up to four times
-    # as fast as the body, and the reference computes it iteratively to 1e-14.
+    # as fast as the body, and the reference computes the contact iteratively to 1e-14.
     assert np.abs(place - as_complex(rolling.pose(theta))).max() < 2e-14
     assert np.abs(first - as_complex(rolling.velocity(theta, rate))).max() < 1e-13
     assert np.abs(second - as_complex(rolling.acceleration(theta, rate, 0 * rate))).max() < 5e-13

@@ -1,4 +1,4 @@
-"""Tests with a joint and a force element that only the vocabulary knows. All other code refuses them by name."""
+"""Tests with a joint and a force element that only the vocabulary knows. Other code refuses these elements by name."""
 
 from __future__ import annotations
 
