@@ -30,7 +30,7 @@ LEAST_FORCE = 1e-4
 
 
 def examined_times(mechanism: Mechanism, valid: NDArray[np.bool_]) -> NDArray[np.int_]:
-    """Indices of evenly spread `valid` times (times,); INSTANTS and WORK limit their number."""
+    """Indices of evenly spread `valid` times (times,); INSTANTS and WORK limit the number of indices."""
     places, rows = np.flatnonzero(valid), mechanism.row_count
     most = min(INSTANTS, WORK // (rows * rows * 3 * len(mechanism.bodies))) if rows else 0
     if most < 2 or not len(places):

@@ -1,4 +1,4 @@
-"""Newton under test with its solvers Kamino and XPBD, in single precision on the processor or a GPU.
+"""Newton under test with its solvers Kamino and XPBD, in single precision on a processor or a GPU.
 
 Bodies are free and all joints are constraints. A Pin is a revolute joint about z, and a Weld is a fixed joint. A joint
 outside the articulations closes a loop, as in Newton's examples. Our code computes force elements before every step and

@@ -63,7 +63,7 @@ def sampled_with_differences(
     )
     position, speed = (np.array(values, dtype=float) for values in zip(*states, strict=True))
     acceleration = np.full_like(speed, np.nan)
-    last = np.array(before[: len(speed) - 1], dtype=float).reshape(speed[1:].shape)  # a lost sample has one state more
+    last = np.array(before[: len(speed) - 1], dtype=float).reshape(speed[1:].shape)  # without that of a lost sample
     with np.errstate(all="ignore"):
         acceleration[1:] = (speed[1:] - last) / dt
     return position, speed, acceleration, stepping

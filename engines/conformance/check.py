@@ -1,4 +1,4 @@
-"""A check: a named function that tests an engine, with or without one small mechanism."""
+"""A check is a named function that tests an engine, with or without a small mechanism."""
 
 from __future__ import annotations
 

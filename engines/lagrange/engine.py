@@ -23,7 +23,7 @@ INTEGRATOR_ORDERS: dict[Integrator, int] = {"euler": 1, "rk4": 4, "dop853": 8}
 # Time constant of Baumgarte's correction in steps, as in the tuned variant of MuJoCo.
 BAUMGARTE_STEPS = 5.0
 # Nominal CPU time [s] of a step of three bodies, with and without compiled code. The published steps depend on it.
-# Therefore it stays unchanged, although the compiled code now takes a third of the time.
+# Therefore the nominal time stays unchanged, although the compiled code now takes a third of this time.
 STEP_COSTS: dict[bool, dict[Integrator, float]] = {
     True: {"euler": 4e-6, "rk4": 8e-6, "dop853": 2e-5},
     False: {"euler": 2e-4, "rk4": 6e-4, "dop853": 1.5e-3},

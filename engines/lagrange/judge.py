@@ -34,7 +34,7 @@ class Judge(Lagrange):
     estimate of poses or velocities exceeds JUDGE_CLAIM, the motion is unresolved from then on, and the run has a
     warning.
 
-    If rows are nearly dependent, rounding may exceed the tolerance, and steps become too small. The run is then
+    If rows are nearly dependent, rounding may exceed the tolerance, and steps become too small. In this case the run is
     repeated with FALLBACK_FACTOR times the tolerance.
     """
 

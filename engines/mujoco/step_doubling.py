@@ -73,7 +73,7 @@ class StepDoubling:
             np.maximum.accumulate(self.relative(each[self.watched])) for each in (self.difference, self.half)
         )
         q = fine / np.where(coarse > 0, coarse, np.inf)
-        factor = np.where(q <= MAX_RATIO, 1 + 2 * q, 3.0)  # also 3 if the run with steps 2h has failed
+        factor = np.where(q <= MAX_RATIO, 1 + 2 * q, 3.0)  # the factor is 3 if the run with 2h failed
         last_watched = np.searchsorted(self.counts[self.watched], self.counts, side="right") - 1
         return np.abs(self.half) * factor[last_watched, None, None], self.half * 2**ORDER / (2**ORDER - 1)
 

@@ -104,7 +104,7 @@ class OwnMuJoCo:
     planar: PlanarModel  # model whose joints move exactly in the plane
     mechanism: Mechanism
     users: Any  # The user's model, which is run.
-    tilt: float = 0.0  # Largest angle [rad] between axes in these two models.
+    tilt: float = 0.0  # Largest angle [rad] between axes of the planar and of the user's model.
     urdf: bool = False  # Whether the file is URDF without an element for MuJoCo.
     suspects: Mapping[str, str] = field(default_factory=dict)
     classes: bool = False  # whether the file may have classes of defaults
@@ -254,7 +254,7 @@ class OwnMuJoCo:
             reset_at = log.reset_at
             is_valid = np.isfinite(qpos).all(axis=1) & np.isfinite(qvel).all(axis=1)
             if reset_at is not None:
-                is_valid &= t < reset_at - model.opt.timestep / 2  # a margin, since MuJoCo's clock is rounded
+                is_valid &= t < reset_at - model.opt.timestep / 2  # MuJoCo's clock is rounded
             is_valid = np.logical_and.accumulate(is_valid)
             pose, twist, acceleration = self._read(model, qpos[is_valid], qvel[is_valid], len(t))
             warnings = (*log.messages, *release_warnings())
