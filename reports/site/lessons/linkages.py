@@ -49,11 +49,13 @@ FREE = Live(
     traces=(("coupler", (0.0, 0.0)),),
 )
 
+MIRRORED = replace(DRIVEN, word="other assembly", scene=DrivenFourBar(branch=-1), sliders=())
+
 FOUR_BAR = Lesson(
     "four_bar",
     "The four-bar linkage",
     "four_bar",
-    (DRIVEN, FREE),
+    (DRIVEN, FREE, MIRRORED),
     (
         Experiment("driven", section="Nine configurations"),
         Experiment(
@@ -92,6 +94,7 @@ FOUR_BAR = Lesson(
             FORCES,
             section="Where methods fail",
         ),
+        Experiment("other assembly", overlays=CENTRE),
     ),
 )
 

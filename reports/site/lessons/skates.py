@@ -55,6 +55,7 @@ SKATE = Lesson(
             (Claim("munk", 0.05, 0.2),),
             section="How do I put an ideal skate into pymunk?",
         ),
+        Experiment("the sleigh", BOTH, overlays=FORCES, section="The only one, and no factor of 2"),
     ),
 )
 
