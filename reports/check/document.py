@@ -113,7 +113,6 @@ notes: [text]: what was done to a script, and what did not take
 
 
 def check_data(found: CheckResult) -> dict[str, Any]:
-    """The JSON document of a check, in the format that `schema` describes."""
     return _plain("MODEL", found)
 
 

@@ -189,7 +189,6 @@ def draw_plane(panel: Any, theme: Theme, ground: Any, label: str | None = None) 
 
 
 def draw_ideal(panel: Any, theme: Theme, pose: Pose, label: str | None = None) -> None:
-    """Draw the ideal pose with solid lines."""
     _draw(panel, pose.rails, linewidth=0.6, color=theme.ink, alpha=0.5)
     _draw(panel, pose.links, linewidth=1.0, color=theme.ink)
     _draw(panel, pose.bars, label, color=theme.ink, linewidth=3.0, markersize=6, **BAR_STYLE)

@@ -32,7 +32,6 @@ class Section:
 
 
 def plain(sections: Sequence[Section], width: int = 120) -> str:
-    """The report for a terminal with `width` columns."""
     lines: list[str] = []
     for section in sections:
         lines += [section.title] if section.title else []

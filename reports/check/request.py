@@ -66,8 +66,6 @@ class CheckRequest:
 
 @dataclass(frozen=True, repr=False)
 class CheckReport:
-    """The report of a check as text, pictures and data."""
-
     request: CheckRequest
     verdict: str
     answer: Section  # the first screen

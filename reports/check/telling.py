@@ -56,7 +56,6 @@ def report_sections(result: CheckResult, pictures: dict[str, tuple[str, str]] | 
 
 
 def summary_row(result: CheckResult) -> tuple[str, ...]:
-    """The row of a model in the table of a folder."""
     user, advised = result.table[0], result.advised
     advice = ("none that was tried", "-", "-")
     if advised is not None:

@@ -109,8 +109,6 @@ class Named:
 
 @dataclass(frozen=True)
 class Question:
-    """The request to check one engine in a worker process."""
-
     named: Named
     index: int  # Index of the engine in `named.engines()`.
     check: str  # Name of the check.

@@ -192,7 +192,6 @@ def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:
 
 
 def print_summary(console: Terminal, rows: list[Measurement]) -> None:
-    """Print a table of methods for each scene, and the outcomes of cells outside the sweeps."""
     judged_rows = judged(rows)
     console.keep(judged_rows)
     for scene in dict.fromkeys(row.scene for row in judged_rows if row.purpose == "sweep"):

@@ -86,7 +86,6 @@ def grid_engines(scene: Scene, engines: Sequence[Engine], pages: Sequence[Page])
 
 
 def _beside(engines: Sequence[Engine]) -> tuple[Engine, ...]:
-    """Select the engines that are not in the grid."""
     from engines.registry import OTHERS
 
     return tuple(engine for engine in engines if engine in OTHERS)

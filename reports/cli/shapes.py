@@ -81,7 +81,6 @@ def _describe(curves: Centrodes, pair: Shapes) -> list[str]:
 
 
 def _read_text(path: Path) -> str:
-    """The text of a file. Raises FileTrouble."""
     try:
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)

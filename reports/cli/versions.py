@@ -95,7 +95,6 @@ def _run(
     store: Path,
     **terms: Any,
 ) -> VersionColumn:
-    """Run scenes in a release and print the number of rows. Raises BadInput."""
     begin = monotonic()
     column = run_release(name, number, scenes, store, progress_of(console, check), announce_pip, **terms)
     console.say(f"{name} {number}: {len(column.rows)} rows after {monotonic() - begin:.0f} s")

@@ -102,7 +102,6 @@ class Prediction:
         return second * ratio ** ((order - 2) / 2) * (step / self.step) ** order
 
     def softness_error(self, quantity: str, softness: Regularisation | None) -> float:
-        """The error that this regularisation causes."""
         return scaled_softness_error(self.soft, quantity, softness, self.holonomic)
 
     def gap_closing_error(self, quantity: str, gap: float, softness: Regularisation | None) -> float:
@@ -282,8 +281,6 @@ STAGE = 1e-3  # Approximate time of one Runge-Kutta stage of the judge for a few
 
 @dataclass(frozen=True)
 class Softened(Task):
-    """The task that computes `unit_softness_errors`."""
-
     scene: Scene
     rows: tuple[bool, ...]
     complete: bool

@@ -89,7 +89,6 @@ class JudgeRun:
 
 
 def call(job: JudgeRun) -> Any:
-    """Run a job. Workers import this function."""
     return job()
 
 

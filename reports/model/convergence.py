@@ -87,7 +87,6 @@ def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit
 
 @lru_cache(maxsize=32768)  # A page, the index and the readme need the same sweep.
 def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
-    """`fit` for pairs (step, error) from coarse to fine."""
     if not pairs:
         return Fit(Verdict.TOO_FEW)
     first = next((index for index, (_, e) in enumerate(pairs) if e <= rounding), len(pairs))

@@ -85,7 +85,6 @@ class Material:
         return [row for cell, row in self.rows.items() if cell.purpose == purpose and cell.scene.name in names]
 
     def of(self, cells: Iterable[Cell]) -> list[Measurement]:
-        """The stored rows of these cells."""
         return [self.rows[cell] for cell in cells if cell in self.rows]
 
 

@@ -43,7 +43,6 @@ DESCRIPTIONS = {
 
 
 def failures(engine: Engine) -> list[str]:
-    """One line for each failed case."""
     results = ((case, case.result()) for case in cases(engine))
     return [f"{case}: {result.sentence}" for case, result in results if result.status == "fails"]
 

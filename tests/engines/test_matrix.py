@@ -240,7 +240,6 @@ def exact(subject: Scene | Mechanism, samples: int) -> Trajectory:
 
 
 def errors(row: Row, every: int) -> list[float]:
-    """Return the errors of poses, twists and reactions with `every` steps for a sample."""
     mechanism = row.subject if isinstance(row.subject, Mechanism) else row.subject.mechanism()
     end = row.span if isinstance(row.subject, Mechanism) else min(row.span, row.subject.duration)
     samples = max(1, math.floor(end / SPACING + 1e-9))

@@ -162,7 +162,6 @@ PAGE_OF_IT = "pendulum_1_length_0.5_rate_2"
 
 @pytest.fixture
 def no_pages(monkeypatch):
-    """Remove all pages, since these tests do not test rendering."""
     monkeypatch.setattr(catalogue, "PAGES", ())
 
 
