@@ -188,7 +188,6 @@ def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
 
 @cache
 def package() -> Any:
-    """Import pybullet without the line that the import prints."""
     with quiet():
         import pybullet
     return pybullet

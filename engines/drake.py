@@ -116,7 +116,6 @@ class Drake(ExtraEngine):
 
 
 def constraints_of(tree: Tree) -> list[Joint]:
-    """The joints that are constraints of the plant."""
     return [*tree.loops, *(joint for joint in tree.mechanism.joints if isinstance(joint, Rod | Gear))]
 
 
@@ -269,7 +268,6 @@ class DrakePlant:
         return sign * drive.turning_rate
 
     def _state(self) -> tuple[Array, Array]:
-        """The tree coordinates and their rates."""
         return self.plant.GetPositions(self.context)[self.address], self._velocity()
 
     def _velocity(self) -> Array:
@@ -297,7 +295,6 @@ class DrakePlant:
         self.simulator.AdvanceTo(self.steps * self.dt)
 
     def _advance(self, count: int) -> bool:
-        """Take steps, or True if Drake raises an error."""
         try:
             for _ in range(count):
                 self._step()

@@ -136,7 +136,6 @@ class NewtonModel:
         return warp.transform(warp.vec3(x, y, 0.0), warp.quat_from_axis_angle(warp.vec3(0.0, 0.0, 1.0), angle))
 
     def _finalized(self, builders: Sequence[Any]) -> Any:
-        """Newton's model of all worlds."""
         whole = builders[0]
         if len(builders) > 1:
             whole = self._new_builder()
@@ -154,7 +153,6 @@ class NewtonModel:
         return builder
 
     def builder(self) -> Any:
-        """A builder of Newton that contains the mechanism."""
         builder = self._new_builder()
         for body in self.mechanism.bodies:
             inertia = [value for row in np.diag([body.inertia] * 3).tolist() for value in row]

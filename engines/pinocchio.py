@@ -113,8 +113,6 @@ class Pinocchio(ExtraEngine):
 
 
 class PinocchioModel:
-    """A mechanism as a model of Pinocchio."""
-
     def __init__(self, tree: Tree, dt: float, integrator: Integrator, correction: float) -> None:
         import pinocchio
 

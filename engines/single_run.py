@@ -76,8 +76,6 @@ class Recorded:
 
 
 class SingleRun(OneShot):
-    """A run of an extra engine; see `engines.Run`."""
-
     def __init__(self, mechanism: Mechanism, dt: float, size: Size, record: Callable[[int, int], Recorded]) -> None:
         """`record(samples, every)` steps the model by steps of dt [s] and returns the states."""
         self._mechanism, self._dt, self._record = mechanism, dt, record

@@ -113,7 +113,6 @@ class Tree:
 
     @property
     def closed(self) -> bool:
-        """Whether any joint needs loop-closing rows."""
         return bool(self._looping)
 
     def turning(self, first: str | None, second: str | None) -> dict[int, float]:

@@ -99,7 +99,6 @@ class Child:
         self.engine, self.settings, self.numbers = engine, settings, itertools.count()
 
     def close(self) -> None:
-        """Close the pipes of a process that has ended."""
         for pipe in (self.process.stdin, self.process.stdout):
             with suppress(OSError):
                 pipe and pipe.close()
@@ -186,8 +185,6 @@ def _fixed_angle(slot: Slot, drive: Drive | None, sign: float, engine: str) -> f
 
 
 class BrowserWorld:
-    """A mechanism as a world in the child process."""
-
     def __init__(self, mechanism: Mechanism, dt: float, engine: str, settings: Settings) -> None:
         self.mechanism, self.dt, joints = mechanism, dt, joint_requests(mechanism, engine)
         self.child = child_of(engine, settings)
@@ -270,8 +267,6 @@ class Planck(BrowserEngine):
 
 
 class P2(BrowserEngine):
-    """p2, in JavaScript."""
-
     name = "p2"
     packages = ("p2",)
     release = "0.7.1"

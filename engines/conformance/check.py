@@ -35,7 +35,6 @@ class NotApplicable(Exception):
 
 
 def require(holds: bool | np.bool_, found: str, expected: str, means: str) -> None:
-    """Raise Fails unless the requirement holds."""
     if not holds:
         raise Fails(found, expected, means)
 
@@ -123,8 +122,6 @@ class WorldMotion:
 
 @dataclass(frozen=True)
 class World:
-    """A mechanism and its exact motion."""
-
     name: str
     mechanism: Mechanism
     exact: Callable[[Array], WorldMotion]

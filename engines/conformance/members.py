@@ -247,7 +247,6 @@ def _refused(name: str, value: Any, call: Callable[[], Any]) -> None:
 
 
 def _first_built(subject: CheckedEngine) -> Mechanism | None:
-    """The first mechanism that the engine builds, or None."""
     for world in (*MOVING, *WORLDS):
         with suppress(Unsupported, Fails):
             subject.build(world.mechanism)

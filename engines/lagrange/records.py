@@ -27,8 +27,6 @@ class ForceKind(IntEnum):
 
 
 class RollingForm(IntEnum):
-    """The formula for the contact of a rolling pair."""
-
     ON_LINE, ON_ROUND, TABULATED, NOT_TABULATED = range(4)
 
 

@@ -41,8 +41,6 @@ SLOW_MOTION = 1e-4
 
 
 class LagrangeRun(OneShot):
-    """A run with exact multipliers; see `engines.Run`."""
-
     def __init__(self, engine: Lagrange, mechanism: Mechanism, dt: float) -> None:
         self._engine, self._mechanism, self._dt = engine, mechanism, dt
         self._regularisation = engine.regularisation(mechanism, dt)

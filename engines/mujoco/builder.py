@@ -89,7 +89,6 @@ class ModelBuilder:
 
     @property
     def gains(self) -> tuple[float, float]:
-        """Stiffness [1/s^2] and damping [1/s] of a row."""
         return self.stiffness.gains(self.mechanism, self.dt)
 
     def index(self, name: str | None) -> int | None:

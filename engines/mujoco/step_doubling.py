@@ -59,11 +59,12 @@ class StepDoubling:
         Rounding in stiff rows does not decrease with h, so differences below ROUNDING_DIFFERENCE are not divided by 15.
 
         With a run of steps h / 2, q is the ratio of its difference to the difference of the run with steps 2h. For RK4
-        q is 1/16, and q <= 1/8 confirms at least order 3. Differences for further halved steps are then assumed to
-        decrease by one half each, so their sum is at most 2 q times the difference of the run with h / 2. If q > 1/8,
-        differences are assumed to decrease by 2/3 each, so their sum is three times the first difference. (Near a
-        change point, one half in place of 2/3 missed a fifth of the error.) Since an error may cross zero, q is the
-        ratio of the largest differences so far.
+        q is 1/16, and q <= 1/8 confirms at least order 3. Each difference for further halved steps is then assumed to
+        be at most half of the previous difference, so their sum is at most 2 q times the difference of the run with h /
+        2. If q > 1/8, each difference is assumed to be at most 2/3 of the previous difference, so their sum is three
+        times the first difference. (Near a change point, one half in place of 2/3 missed a fifth of the error.) Since
+        an error may
+        cross zero, q is the ratio of the largest differences so far.
         """
         size = np.abs(self.difference)
         if self.half is None:

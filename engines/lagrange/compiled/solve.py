@@ -21,7 +21,7 @@ INDEPENDENT_PIVOT = 1e-13
 DEPENDENT_PIVOT = 1e-9
 # Smallest pivot that needs no correction, since rounding then costs less than two digits.
 WELL_CONDITIONED = 1e-2
-# Systems with more rows are always corrected once, since the pivots of a long chain do not show the condition number.
+# A system with more rows is always corrected once, since the pivots of a long chain do not show the condition number.
 FEW_ROWS = 24
 # Largest number of corrections. Each correction must halve the residual, and four corrections are enough to reach
 # rounding.

@@ -31,7 +31,6 @@ ToEngine = Callable[[Vector], Vector]  # converts a point of a mechanism's body 
 
 
 def _shipped() -> tuple[float, float]:
-    """The default collision_slop and collision_bias of a space."""
     space = pymunk.Space()  # local, see `engines.pymunk.engine`
     return space.collision_slop, space.collision_bias
 
