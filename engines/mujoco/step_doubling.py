@@ -60,11 +60,10 @@ class StepDoubling:
 
         With a run of steps h / 2, q is the ratio of its difference to the difference of the run with steps 2h. For RK4
         q is 1/16, and q <= 1/8 confirms at least order 3. Each difference for further halved steps is then assumed to
-        be at most half of the previous difference, so their sum is at most 2 q times the difference of the run with h /
-        2. If q > 1/8, each difference is assumed to be at most 2/3 of the previous difference, so their sum is three
-        times the first difference. (Near a change point, one half in place of 2/3 missed a fifth of the error.) Since
-        an error may
-        cross zero, q is the ratio of the largest differences so far.
+        be at most half of the previous difference, so their sum is at most 2 q times the difference of that run. If q >
+        1/8, each difference is assumed to be at most 2/3 of the previous difference, so their sum is three times the
+        first difference. (Near a change point, one half in place of 2/3 missed a fifth of the error.) Since an error
+        may cross zero, q is the ratio of the largest differences so far.
         """
         size = np.abs(self.difference)
         if self.half is None:
