@@ -173,7 +173,7 @@ def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> 
 def _first_exponential(growth: Array, expected: Array, size: float) -> int:
     """Index of the first sample with more than the expected growth, or the number of samples without such a sample.
 
-    Growth that has receded at the end counts only if the disturbance has exceeded LINEAR_LIMIT.
+    Growth that ends before the last sample counts only if the disturbance has exceeded LINEAR_LIMIT.
     """
     beyond = growth > expected
     stays = beyond[-1] or np.any(beyond & (growth * size > LINEAR_LIMIT))

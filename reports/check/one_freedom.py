@@ -1,9 +1,9 @@
 """The ideal motion of a mechanism with one freedom along its configuration curve, also through singular positions.
 
-The arc length s of the curve is measured in the metric of the mass matrix M. The equations are q' = tau(q) v and
-v' = tau^T f with the speed v = s' and the applied forces f, since ideal joints do no work along tau. The vector tau
-spans the null space of the rows, and tau^T M tau = 1. The equations contain no multipliers, so there is no division by
-a small singular value. If two rows become dependent, as at a dead centre of a parallelogram, the null space has further
+The arc length s of the curve is measured in the metric of the mass matrix M. The equations are q' = tau(q) v and v' =
+tau^T f with the speed v = s' and the applied forces f. Ideal joints do no work along tau. The vector tau spans the null
+space of the rows, and tau^T M tau = 1. The equations contain no multipliers, so there is no division by a small
+singular value. If two rows become dependent, as at a dead centre of a parallelogram, the null space has further
 directions. The velocity is continuous for finite forces, so tau is then the direction closest to the previous tau.
 """
 

@@ -141,7 +141,7 @@ def run_check(request: CheckRequest, model: Any = None) -> CheckReport | Refused
             trouble = refusal(reason)
     if request.pictures:
         note("drawing")
-        from reports.check.pictures import picture_data_of, render_pictures  # This import takes a second.
+        from reports.check.pictures import picture_data_of, render_pictures  # Importing this module takes a second.
 
         svg_pictures = render_pictures(picture_data_of(result))
     report_parts = answer_section(result), report_sections(result, svg_pictures), summary_row(result)

@@ -100,7 +100,7 @@ def _print_judge() -> None:
     scenes = dict.fromkeys(
         cell.scene for cell in choose_cells(choice.scenes, choice.engines, choice.known.pages, full=True)
     )
-    truths = measure_truths(scenes)  # before other measurements, since some motions are cached
+    truths = measure_truths(scenes)  # These come first, since some motions are cached.
     total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
     _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
 

@@ -238,10 +238,10 @@ class ReferenceTrial:
                     value.mechanism()
                 for scene in (value,) if is_scene else catalogue.SCENES:
                     for engine in registry.VARIANTS if is_scene else (value,):
-                        with suppress(BadInput):  # This error is reported when the cost is needed.
+                        with suppress(BadInput):  # An error of the cost is reported when the cost is needed.
                             estimated_cost(Cell(scene, engine, 1))
                 if is_scene and self.motion:
-                    with suppress(ValueError):  # The page reports this error.
+                    with suppress(ValueError):  # A page reports that the exact motion is refused.
                         value.motion(np.linspace(0.0, value.duration, value.samples + 1))
         except ValueError as reason:
             return str(reason)

@@ -96,7 +96,7 @@ def terms(
         rounding = max(rounding, prediction.speed / prediction.length * QUANTITY["angle"].rounding)
     if quantity not in ("gap", "reaction"):
         rounding *= promise.amplified  # The weights of an extrapolation amplify rounding.
-    if quantity == "reaction" and promise.differences:  # The reaction is a change of velocity over the step.
+    if quantity == "reaction" and promise.differences:  # A reaction is a change of velocity over the step.
         rounding += velocity * promise.amplified * promise.differences / step / prediction.acceleration
     if promise.of(quantity) == EXACT:
         return 0.0, 0.0, rounding

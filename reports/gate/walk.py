@@ -152,8 +152,8 @@ def run_and_check(
 def vanished(case: Case, before: Sequence[Old | None]) -> tuple[Check, ...]:
     """A check that fails if the baseline lacks rows of a case.
 
-    before: the case's rows in the baseline, from coarse to fine steps. The finest steps may be missing, and also all
-    rows of a third party's scene or engine. Intermediate steps must not be missing.
+    before: the case's rows in the baseline, from coarse to fine steps. The finest steps, and all rows of a third
+    party's scene or engine, may be missing in the baseline. Intermediate steps must not be missing.
     """
     finer = next((index for index, old in enumerate(reversed(before)) if old is not None), None)
     if finer is None:

@@ -34,7 +34,7 @@ class Broken(Ending):
 
 
 class BadInput(Ending, ValueError):
-    """An input is refused. The message contains the value, the reason and valid values."""
+    """An input is not accepted. The message contains the value, the reason and valid values."""
 
     status = REFUSED
 

@@ -89,7 +89,7 @@ def _files(module: str) -> tuple[Path, ...]:
     """The sources of a module that is not installed, and the files whose names occur in these sources."""
     try:
         spec = find_spec(module)
-    except (ImportError, ValueError):  # The module has no spec.
+    except (ImportError, ValueError):  # A module may have no spec.
         spec = None
     if spec is None or not (spec.submodule_search_locations or spec.origin):
         return ()

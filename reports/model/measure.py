@@ -251,7 +251,7 @@ def compare(
         errors["flips"] = branch_flips(cell.scene, truth, finite)
     except NoMotion as reason:  # Errors are unknown without an exact motion.
         return replace(row, outcome=Outcome.REFUSED, sentence=str(reason))
-    except ValueError as reason:  # The exact motion does not exist. The row has the engine's outcome.
+    except ValueError as reason:  # Without an exact motion the row has the engine's outcome.
         note = "; ".join(filter(None, (f"the reference refuses: {reason}", note)))
     if trajectory.estimate is not None and not np.isnan(trajectory.estimate[..., 2]).all():
         errors["estimate"] = float(np.nanmax(np.abs(trajectory.estimate[..., 2])))

@@ -78,7 +78,7 @@ def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_ke
         item, key = pickle.loads(item_and_key)
     except (ImportError, AttributeError) as error:
         return Refusal({"what it would run": describe(error)})
-    if key is not None and replace(item).key != key:  # The copy has no cached key.
+    if key is not None and replace(item).key != key:  # `replace` makes a copy without a cached key.
         return Refusal(versions_of(item))
     return function(item)
 

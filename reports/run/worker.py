@@ -227,7 +227,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
             break
         os.ftruncate(2, 0)  # So the log contains only the output of this job.
         stays, answer = _answer(job, clock, limit, wall)
-        if os.getpid() != number:  # The job has forked this process. Only the worker answers.
+        if os.getpid() != number:  # A process that the job has forked must not answer.
             os._exit(0)
         connection.send_bytes(pickle.dumps((stays, answer)))
     os._exit(0)  # sys.exit would wait for threads that a job has started.
@@ -300,7 +300,7 @@ def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
     clock.end = time.process_time() + limit
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # The parent would act after `wall`.
+        signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # The parent should end the job after `wall`.
     try:
         yield
     finally:

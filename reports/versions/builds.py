@@ -42,7 +42,7 @@ class Build:
     label: str  # in tables
     engine: str
     location: Path
-    stored: bool  # Whether rows are stored, as for a released version. Another build may change.
+    stored: bool  # Whether rows are stored, as for released versions, which do not change.
 
 
 @dataclass(frozen=True)

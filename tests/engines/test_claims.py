@@ -87,7 +87,7 @@ def test_the_displacement_closes_the_gaps_for_any_masses():
         t = np.arange(3.0)
         moved = closing(described, t, pose)
         assert np.abs(described.gap(pose + moved, t)).max() < 1e-3 * np.abs(described.gap(pose, t)).max()
-        assert np.abs(moved[0]).max() < 1e-12  # rounding divided by the miss
+        assert np.abs(moved[0]).max() < 1e-12  # Rounding is divided by the miss.
         assert not closing(described, t, np.full_like(pose, np.nan)).any()
 
 

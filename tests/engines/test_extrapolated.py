@@ -239,7 +239,7 @@ def test_a_further_run_decides_if_the_last_difference_is_small_by_chance():
     residual = {power: float(extrapolation_weights(levels, powers) @ steps**power) for power in (5, 6)}
     without = {power: float(extrapolation_weights(levels[1:], powers[:-1]) @ steps[1:] ** power) for power in (5, 6)}
     last = {power: residual[power] - without[power] for power in (5, 6)}
-    size = 3 * CLAIM / abs(residual[5] - residual[6] * last[5] / last[6])  # The error is 3 CLAIM after 1 s.
+    size = 3 * CLAIM / abs(residual[5] - residual[6] * last[5] / last[6])  # The error after 1 s is 3 CLAIM.
     toy = SeriesToy({2: 1e-3, 3: -2e-3, 4: 1e-3, 5: size, 6: -size * last[5] / last[6]})
     trajectory = run(Extrapolated(toy, "extended", levels, powers), dt)
     error = np.abs(trajectory.pose - np.cos(trajectory.t)[:, None, None]).max(axis=(1, 2))

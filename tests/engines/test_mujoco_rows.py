@@ -100,7 +100,8 @@ def test_user_rows_are_the_rows_of_the_mechanism_in_tree_coordinates() -> None:
             if not isinstance(joint, Skate):
                 wanted -= STIFFNESS * joint.gap(*poses, 0.0)[0]
             assert jacobian[row] @ v == pytest.approx(slip, rel=1e-12, abs=1e-12)
-            # The residual J a - right is equal in both kinds of coordinates. Accelerations contain velocity terms.
+            # The residual J a - right is equal in both kinds of coordinates. Accelerations of bodies contain velocity
+            # terms.
             expected = line @ change[ends].ravel() - wanted
             assert jacobian[row] @ a - right[row] == pytest.approx(expected, rel=1e-11, abs=1e-11)
 
