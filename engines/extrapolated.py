@@ -175,8 +175,8 @@ class ExtrapolatedRun(OneShot):
     def _needs_further_run(self, extrapolated: Trajectory, runs: list[Trajectory]) -> bool:
         """Whether a further run decides the error.
 
-        A further run is needed if the estimate is near the claim. A further run is also needed if the last difference
-        may be small by chance. In this case the ratio of the two earlier differences predicts a difference near the
+        A further run is needed if the estimate is near the claim. The last difference may be small by chance. A further
+        run is therefore also needed if the ratio of the two earlier differences predicts a last difference near the
         claim.
         """
         low, high = OPEN

@@ -3,14 +3,14 @@
 A step of Chipmunk (cpSpaceStep.c) begins with a drift, which changes the positions by v dt with the old velocities v.
 At the new positions a kick adds the effect of the forces to the velocities. Then the joints correct the velocities one
 after the other, `iterations` times. The iterations start from the impulses of the previous step. After n steps the
-velocities contain the full kick at the positions p_n. There are two ways to read the velocities:
+velocities contain the full kick at the positions p_n. There are two ways to read the velocities.
 
-- `leapfrog` False: `body.velocity` is the velocity at t_n, as users read it. The first drift uses the velocity at t = 0
-  instead of dt/2. Half a kick is missing, so errors have order 1. After a start from rest, positions have a delay of
-  dt/2. Velocities have order 2, since the kick of the last step compensates the delay.
-- `leapfrog` True: the run begins with a kick of half a step without drift. After the half kick, the engine has the
-  velocity v at t_n + dt/2. The velocity at t_n is the mean of the velocities at t_n - dt/2 and t_n + dt/2. Errors have
-  order 2.
+- If `leapfrog` is False, `body.velocity` is the velocity at t_n, as users read it. The first drift uses the velocity at
+  t = 0 instead of dt/2. Half a kick is missing, so errors have order 1. After a start from rest, positions have a delay
+  of dt/2. Velocities have order 2, since the kick of the last step compensates the delay.
+- If `leapfrog` is True, the run begins with a kick of half a step without drift. After the half kick, the engine has
+  the velocity v at t_n + dt/2. The velocity at t_n is the mean of the velocities at t_n - dt/2 and t_n + dt/2. Errors
+  have order 2.
 
 The force of step n is evaluated at p_n. Therefore the change of velocity over step n divided by dt is always the
 acceleration at t_n. `Mechanism.reaction` computes signed reactions from these accelerations, since `constraint.impulse`

@@ -23,7 +23,8 @@ STARTED = replace(LEAPFROG, startup_steps=1, max_work=LARGEST_WORK)
 # In a loop with skates and hinges, fewer iterations have a residual above the error of the step. Forty iterations take
 # as long as the placing of one groove.
 WITH_GROOVES = replace(STARTED, variant="aimed", leapfrog=False, min_iterations=40)
-# The error of the leapfrog contains all powers of the step from 2 on. With a skate it contains all powers from 1 on.
+# The error of the leapfrog contains all powers of the step from 2 on. With a skate the error contains all powers from 1
+# on.
 FIVE_LEVELS = (2, 3, 4, 6, 8)
 EXTENDED = Extended(
     "extended",

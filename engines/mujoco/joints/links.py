@@ -4,13 +4,13 @@ A pin or a weld that closes a loop is a `connect`. One row of the `connect` is n
 The angle of a weld or a gear is the length of a fixed tendon, which is a sum of tree coordinates with constant factors.
 An equality keeps this length constant, without a velocity term because the factors are constant.
 
-`RodBy` is the construction of a rod:
+`RodBy` is the construction of a rod.
 
 - "tendon": an equality of a spatial tendon between two sites. Up to 4.0.1 the equality lacks the velocity term -(dJ/dt)
   v, so a gap of its spring supplies this force.
 - "rows": a row for the rod that a callback writes in every stage.
 
-`DriveBy` is the construction of a drive whose rotation is a tree coordinate:
+`DriveBy` is the construction of a drive whose rotation is a tree coordinate.
 
 - "inertia": the armature is so large that no force can accelerate the coordinate.
 - "overwrite": our code overwrites position and velocity after every step (`engines.mujoco.running`). MuJoCo's solver

@@ -1,4 +1,4 @@
-"""Constructions of a skate, for which MuJoCo has no joint. `SkateBy` is the construction:
+"""Constructions of a skate, for which MuJoCo has no joint. `SkateBy` is one of three constructions.
 
 - "blade": a capsule that touches a plane, with friction across the capsule. MuJoCo's maintainers suggest a capsule.
 - "predicted tendon": a fixed tendon whose coefficients are the row of the skate. Our code computes the coefficients

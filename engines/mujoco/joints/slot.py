@@ -1,7 +1,7 @@
 """Constructions of slots that are no slide of the kinematic tree.
 
 If a slot keeps the centre of mass of a free body on a line of the ground, the slot is an equality of a fixed tendon.
-`SlotBy` is the construction of other slots:
+`SlotBy` is the construction of other slots.
 
 - "halves": the second body is split into two halves with the same centre of mass. Joints of the tree let one half slide
   and turn in the first body, and a `weld` joins the halves.

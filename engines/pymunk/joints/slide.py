@@ -1,6 +1,6 @@
 """Constructions of a Slot and a Skate in pymunk, by groove joints, by pin joints, or by corrected velocities.
 
-`SlotConstruction` is the construction of a slot:
+`SlotConstruction` is the construction of a slot.
 
 - "groove": a `GrooveJoint`, as a user would build it. Chipmunk solves for the impulse in both directions and keeps the
   normal component (applyImpulse and grooveConstrain in cpGrooveJoint.c). This impulse is correct only if the normal is
