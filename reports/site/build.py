@@ -154,7 +154,7 @@ def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
     results = [(name.removesuffix(".md"), title(text)) for name, text in source.pages.items()]
     trees = {"Results": [f"results/{name}" for name, _ in results if name != "index"], "More": ["howto/index", "about"]}
     trees["More"] += ["lecture"] * bool(lecture) + ["reference/index"] * source.api
-    files["index.md"] = _front_page(lessons, results, trees).encode()
+    files["index.md"] = _front_page(source, lessons, results, trees).encode()
     files["about.md"] = _about(source).encode()
     return files
 
@@ -180,14 +180,17 @@ def _index(heading: str, pages: list[tuple[str, str]]) -> str:
     return f"# {heading}\n\n{links}\n\n```{{toctree}}\n:hidden:\n\n{tree}\n```\n"
 
 
-def _front_page(lessons: tuple[Lesson, ...], results: list[tuple[str, str]], trees: Mapping[str, list[str]]) -> str:
+def _front_page(
+    source: SiteSource, lessons: tuple[Lesson, ...], results: list[tuple[str, str]], trees: Mapping[str, list[str]]
+) -> str:
     text = (HERE / "front.md").read_text(encoding="utf-8")
     taught = cards([(f"lessons/{lesson.name}.html", lesson.title) for lesson in lessons])
     measured = cards([(f"results/{name}.html", heading) for name, heading in results])
     tree = "\n\n".join(
         f"```{{toctree}}\n:hidden:\n:caption: {name}\n\n" + "\n".join(pages) + "\n```" for name, pages in trees.items()
     )
-    return jinja2.Template(text).render(first=lessons[0].name, lessons=taught, results=measured) + f"\n\n{tree}\n"
+    values = {"first": lessons[0].name, "lessons": taught, "results": measured, "missing": _without(source, MUJOCO)}
+    return f"{jinja2.Template(text).render(values)}\n\n{tree}\n"
 
 
 def _about(source: SiteSource) -> str:

@@ -50,9 +50,9 @@ def files(request):
 def address(files, tmp_path_factory):
     folder = tmp_path_factory.mktemp("site") / "site"
     write_site(folder, files)
-    running = server(folder, 0)
+    running = server(folder.parent, 0)  # the site is in a subfolder
     threading.Thread(target=running.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{running.server_address[1]}/"
+    yield f"http://127.0.0.1:{running.server_address[1]}/site/"
     running.shutdown()
     running.server_close()
 

@@ -134,7 +134,9 @@ def test_pages_load_nothing_from_other_servers_and_the_site_names_missing_packag
     trouble = "the engine MuJoCo, compiled to WebAssembly by its maintainers): npm is not installed"
     assert "packages/munk2d.js" in files
     assert trouble in texts["about.html"]
-    assert [name for name, text in texts.items() if name.startswith("lessons/") and trouble not in text] == []
+    assert [
+        name for name, text in texts.items() if name.startswith(("lessons/", "index")) and trouble not in text
+    ] == []
     assert "npm is not installed" in texts["results/rows.html"]
     assert json.loads(files[MARKER])["troubles"]
 
