@@ -47,7 +47,7 @@ Factorisation = Literal["auto", "dense", "sparse"]
 
 @dataclass(frozen=True)
 class MuJoCo(Engine, Valid):
-    """Settings of MuJoCo; raises ValueError for invalid ones.
+    """Settings of MuJoCo; raises ValueError for invalid settings.
 
     `coordinates`: with "tree" a body moves relative to its parent in a kinematic tree, and only loops need constraints.
     With "free" every body has three coordinates, and every pin is a constraint. `drive`, `slots`, `skates`, `rolls`,

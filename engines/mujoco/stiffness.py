@@ -2,7 +2,7 @@
 
 A row obeys a + b v + k r = -R f, where r is its gap and f its force. The regularisation R is (1 - d) / d times an
 estimate of the inverse inertia of the row. The impedance d is at most 0.9999 (mjMAXIMP in mjmodel.h). MuJoCo documents
-the law in "Computation: Constraint model", and solref and solimp in "Modeling: Solver parameters".
+the law in the section "Constraint model", and solref and solimp in the section "Solver parameters".
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """MuJoCo's declared regularisation of loops in a user's model, and changes of settings in the model and file.
 
 A row obeys a + b v + k d r = -R f, where r is its gap and f its force. R is (1 - d) / d times a diagonal matrix for the
-inverse inertia. The impedance d grows with the gap. MuJoCo documents the law in "Computation: Constraint model" and
-"Modeling: Solver parameters".
+inverse inertia. The impedance d grows with the gap. MuJoCo documents the law in the sections "Constraint model" and
+"Solver parameters".
 """
 
 from __future__ import annotations
