@@ -15,16 +15,19 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from engines import Unsupported
 from engines.lagrange import Lagrange
+from reference.scene import Scene
 from reports.model.outcomes import Outcome
 from reports.model.tasks import Motion
 from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
-from reports.site.lesson import Lesson, SiteSource
+from reports.site.lesson import Experiment, Guess, Lesson, Quantity, SiteSource
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import data, first_picture
-from reports.site.live.sliders import ENGINES, NAMES, SHIPPED
+from reports.site.live.models import own_values
+from reports.site.live.sliders import ENGINES, NAMES, SHIPPED, Live
 from reports.site.markdown import cards, render_html, render_lecture, section, title
 from reports.site.munk2d import COMPILED
 from reports.site.packages import D3, MUJOCO, PACKAGES, PLOT, NotFetched, Package, fetch_package
@@ -206,19 +209,21 @@ def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[
     for part, experiment in zip(lesson.parts, lesson.experiments, strict=True):
         live = lesson.scene(experiment.scene)
         start = live.located(experiment.before)
-        values = {name: control.texts[start.get(name, control.start)] for name, control in live.controls().items()}
+        values, words = _start_texts(live, experiment), live.words()
+        guesses = experiment.guesses or (Guess(),) * len(part.answers)  # without a change nothing is run
         body = quote(experiment.section) if experiment.section else None
         parts.append(
             {
                 "heading": part.heading,
-                "text": _with_drags(part.text, values),
+                "text": _with_drags(part.text, values, words),
                 "question": Markup(render_html(part.question).removeprefix("<p>").removesuffix("</p>\n")),
-                "answers": part.answers,
-                "after_words": _with_drags(part.after, values),
+                "answers": [_answer(live, *each) for each in zip(part.answers, guesses, strict=True)],
+                "after_words": _with_drags(part.after, values, words),
                 "scene": lesson.scenes.index(live),
                 "before": start,
                 "after": live.located(experiment.after),
                 "shown": " ".join(("paths", *experiment.overlays)),
+                "quantities": [quantity_data(live, each) for each in experiment.quantities],
                 "more": None if body is None else {"heading": experiment.section, "body": Markup(body)},
                 "widget": experiment.widget,
             }
@@ -235,10 +240,49 @@ def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[
     }
 
 
-def _with_drags(text: str, values: Mapping[str, str]) -> Markup:
+def _answer(live: Live, answer: tuple[str, bool], guess: Guess) -> dict[str, Any]:
+    """Return an answer for the template; `change` has the positions of the sliders that it proposes."""
+    change = None if guess.change is None else live.located(guess.change)
+    return {"words": answer[0], "right": answer[1], "change": change, "times": guess.times, "of": guess.of or ""}
+
+
+def quantity_data(live: Live, quantity: Quantity) -> dict[str, Any]:
+    """Return a quantity for the page, with the indices of its bodies."""
+    mechanism = live.scene.mechanism()
+    bodies = [mechanism.body_index(body) for body in quantity.bodies]
+    return {"kind": quantity.kind, "words": quantity.words, "bodies": bodies}
+
+
+def _start_texts(live: Live, experiment: Experiment) -> dict[str, str]:
+    """Return the texts of all controls before a question; a value that the method chooses is a number, too."""
+    controls, start = live.controls(), live.located(experiment.before)
+    place = {name: start.get(name, control.start) for name, control in controls.items()}
+    changed: Any = {slider.field: slider.values[place[slider.field]] for slider in live.sliders}
+    scene: Scene = replace(live.scene, **changed)  # type: ignore[type-var]
+    munk, mujoco = (live.methods(name)[place[name]][1] for name in ENGINES)
+    step = scene.duration / live.steps[place["steps"]]
+    try:
+        own = own_values(munk, mujoco, scene.mechanism(), step, scene.duration)
+    except Unsupported:
+        own = {}
+    texts = {name: control.texts[place[name]] for name, control in controls.items()}
+    return {
+        name: own.get(name, text) if controls[name].values[place[name]] is None else text
+        for name, text in texts.items()
+    }
+
+
+def _with_drags(text: str, values: Mapping[str, str], words: Mapping[str, str]) -> Markup:
     """Return the HTML of a text; the name of a control in braces becomes a number that the reader can drag."""
-    number = r'<span class="drag" role="slider" tabindex="0" data-name="{0}" aria-label="{0}">{1}</span>'
-    return Markup(DRAGGED.sub(lambda match: number.format(match[1], escape(values[match[1]])), render_html(text)))
+    number = (
+        '<span class="drag" role="slider" tabindex="0" data-name="{0}" aria-label="{2}" aria-valuemin="0" '
+        'aria-valuenow="0" aria-valuetext="{1}">{1}</span>'
+    )
+
+    def drag(match: re.Match[str]) -> str:
+        return number.format(match[1], escape(values[match[1]]), escape(words[match[1]]))
+
+    return Markup(DRAGGED.sub(drag, render_html(text)))
 
 
 def _front_picture(source: SiteSource) -> str:

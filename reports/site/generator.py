@@ -25,6 +25,7 @@ NEEDED = ("sphinx", "myst_parser", "furo", "latex2mathml")
 LINE = re.compile(r' (?:d|x|y)="[^"]*"')
 LONG = re.compile(r"-?\d+\.\d{2,}(?![\de])")
 PACKAGES = ("reference", "engines")
+MARKUP = re.compile(r"[*|]|(?<=\w)_(?!\w)")  # in docstrings outside of code
 MODULE = "{name}\n{line}\n\n.. automodule:: {name}\n   :members:\n"
 # Kinds of Sphinx warnings that are ignored, since docstrings are plain text and headings skip levels.
 HARMLESS = ("docutils", "autodoc", "ref.", "toc.", "myst.header")
@@ -82,8 +83,9 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def setup(app: Any) -> None:
-    """Register the renderer of formulas. Sphinx calls this function because this module is an extension."""
+    """Register the renderer of formulas and the escaping of docstrings. Sphinx calls this function of an extension."""
     app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))
+    app.connect("autodoc-process-docstring", escape_docstring)
 
 
 def configure(extra: Path) -> dict[str, Any]:
@@ -143,6 +145,13 @@ def colours() -> str:
         f":root[data-scheme=dark] {{ color-scheme: dark; {dark} }}\n"
         ":root[data-scheme=light] { color-scheme: light }\n"
     )
+
+
+def escape_docstring(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+    """Escape the characters of plain text that reStructuredText would read as references or emphasis."""
+    parts = re.split(r"(`[^`]*`)", "\n".join(lines))
+    escaped = [part if index % 2 else MARKUP.sub(r"\\\g<0>", part) for index, part in enumerate(parts)]
+    lines[:] = "".join(escaped).split("\n")
 
 
 def visit_inline(translator: Any, node: Any) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from reports.model.tasks import Answer, Motion
 from reports.site.live.sliders import DOCUMENTED, ENGINES, Live, Name
@@ -18,13 +18,51 @@ BOTH: dict[str, Any] = dict.fromkeys(ENGINES, DOCUMENTED)
 FORCES, CENTRE = ("reactions",), ("centre",)  # overlays
 
 
+Kind = Literal["gap", "rates", "bend", "centre", "contact"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a motion that is shown beside the errors; assets/quantities.js computes it.
+
+    gap: the largest gap of a pin or slot [m]. rates: the least and the largest turning rate of a body [rad/s]. bend:
+    the first time [s] at which the angle between two bodies is 1 rad. centre: the median distance of an engine's
+    instant centre from the exact one [m]. contact: the largest change of the sum of the distances from the contact to
+    the two pins of a pair of gears [m].
+    """
+
+    kind: Kind
+    words: str
+    bodies: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
 class Claim:
-    """A claim: a change of settings multiplies an engine's error by `least` to `most`."""
+    """A claim: a change of settings multiplies an engine's error by `least` to `most`.
 
-    engine: Name
+    of: a quantity of the experiment instead of the error; then `engine` may be "exact". is_value: the limits are those
+    of the number after the change, and not of its ratio to the number before.
+    """
+
+    engine: Name | Literal["exact"]
     least: float = 0.0
     most: float = math.inf
+    of: Kind | None = None
+    is_value: bool = False
+
+
+@dataclass(frozen=True)
+class Guess:
+    """The meaning of an answer: settings that it proposes, or the error that it predicts.
+
+    change: the settings that are run for this answer; None for an answer about the change of the experiment. times: the
+    predicted factor of each engine's error, or of the quantity `of`. claims: claims on the run of `change`.
+    """
+
+    change: Mapping[str, Any] | None = None
+    times: Mapping[Name | Literal["exact"], float] = field(default_factory=dict)
+    of: Kind | None = None
+    claims: tuple[Claim, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -34,7 +72,8 @@ class Experiment:
     before: values of controls; the other controls have their start values. after: the values that change. claims:
     claims on this change. causes: further changes, each with a claim relative to the errors after the first change;
     they test the cause that the text gives. overlays: names of overlays in addition to the paths. section: heading of
-    the quoted section of the Markdown page. widget: name of a script in assets that draws below the text.
+    the quoted section of the Markdown page. widget: name of a script in assets that draws below the text. guesses: the
+    meanings of the answers in their order. quantities: numbers that are shown beside the errors.
     """
 
     scene: str
@@ -45,6 +84,8 @@ class Experiment:
     overlays: tuple[str, ...] = ()
     section: str = ""
     widget: str = ""
+    guesses: tuple[Guess, ...] = ()
+    quantities: tuple[Quantity, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -5,18 +5,20 @@ from __future__ import annotations
 
 import shutil
 import threading
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from reference.scene import Scene
 from reports.cli.site import texts_of
 from reports.model.tasks import answered
-from reports.site.build import build, tasks
+from reports.site.build import build, quantity_data, tasks
 from reports.site.folder import server, write_site
-from reports.site.lesson import SiteSource
+from reports.site.lesson import Claim, Quantity, SiteSource
 from reports.site.lessons import LESSONS
 from reports.site.live.sliders import ENGINES, INTEGRATORS, Live
 from tests import RESULTS
@@ -124,21 +126,43 @@ def running(chromium, address, files):
 BY_NAME = {lesson.name: lesson for lesson in LESSONS}
 
 
-# JavaScript that runs the engines of the page. `places`: indices of controls. `start`: initial pose, or null.
-RUN_ENGINES = """async ([scene, places, start]) => {
+# JavaScript that runs the engines of the page. `places`: indices of controls. `start`: initial pose, or null. `wanted`:
+# quantities.
+RUN_ENGINES = """async ([scene, places, start, wanted]) => {
   const { ask, form } = window.crosscheck;
   form.move(scene, places);
-  const told = await ask({ setting: form.setting(start) });
-  return { exact: { pose: [...told.exact.pose], missed: told.exact.missed }, lost: told.lost, idle: told.idle,
+  const setting = form.setting(start);
+  const told = await ask({ setting, quantities: wanted });
+  const missed = told.exact.computed ? await ask({ kind: "check", setting }) : null;
+  return { exact: { pose: [...told.exact.pose], missed }, lost: told.lost, idle: told.idle,
+    own: told.own, quantities: Object.fromEntries(told.quantities.map(({ kind, found }) => [kind, found])),
     motions: Object.fromEntries(told.motions.map(({ name, pose, twist, error, from, apart }) =>
       [name, { pose: [...pose], twist: [...twist], error, from, apart }])) };
 }"""
 
 
-def run_engines(page: Any, lesson: str, scene: str, values: dict[str, Any], start: list[float] | None = None) -> Any:
+def run_engines(
+    page: Any,
+    lesson: str,
+    scene: str,
+    values: dict[str, Any],
+    start: list[float] | None = None,
+    quantities: Sequence[Quantity] = (),
+) -> Any:
     """Return the motions of the engines in the page for a scene with these values of its controls."""
     live = BY_NAME[lesson].scene(scene)
-    return page.evaluate(RUN_ENGINES, [BY_NAME[lesson].scenes.index(live), live.located(values), start])
+    wanted = [quantity_data(live, each) for each in quantities]
+    return page.evaluate(RUN_ENGINES, [BY_NAME[lesson].scenes.index(live), live.located(values), start, wanted])
+
+
+def number_of(answer: Any, claim: Claim) -> float:
+    """Return the number of a run on which a claim is made; a lost motion has an infinite error."""
+    if claim.of is not None:
+        found = answer["quantities"][claim.of][claim.engine]
+        assert found is not None
+        return found[-1]
+    error = answer["motions"][claim.engine]["error"]
+    return error if error is not None and np.isfinite(error) else np.inf
 
 
 def python_of(live: Live, values: dict[str, Any]) -> tuple[Scene, dict[str, Any], float]:

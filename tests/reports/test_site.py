@@ -227,10 +227,14 @@ def test_every_stored_row_has_its_cost_and_settings():
 
 def test_the_reference_contains_docstrings():
     require_packages()
-    names = ("reference/reference.mechanism.rst", "reference/index.rst")
+    modules = ("mechanism", "numerics.integration", "chapter.skates")
+    names = ("reference/index.rst", *(f"reference/reference.{module}.rst" for module in modules))
     sources = {name: text for name, text in reference_sources().items() if name in names} | {"index.md": b"# Site\n"}
     pages, _ = build_html(Documents(sources, {}, {"lessons": ()}, lambda app: iter(())))
     assert "Bodies, the joints between them" in pages["reference/reference.mechanism.html"].decode()
+    for module in modules:  # "|y|" and "x_" are no references
+        page = LinksOfPage(pages[f"reference/reference.{module}.html"].decode())
+        assert [link for link in page.links if link.startswith("#") and link[1:] not in page.anchors] == []
 
 
 ENGINES = (("pymunk default", pymunk.DEFAULT, 1), ("mujoco tuned", mujoco.TUNED, 1))

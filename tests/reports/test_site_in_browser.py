@@ -15,6 +15,7 @@ from engines.mujoco.stiffness import STIFFEST, TiedToStep
 from reference.mechanism import Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.site.folder import compressed_size
+from reports.site.lesson import Claim
 from reports.site.lessons import LESSONS
 from reports.site.lessons.skates import NAIVE
 from reports.site.live.sliders import DOCUMENTED, ENGINES, Live
@@ -26,6 +27,7 @@ from tests.reports.site_in_browser import (
     address,
     chromium,
     files,
+    number_of,
     opened,
     python_of,
     run_engines,
@@ -100,21 +102,43 @@ def test_the_engines_in_the_page_compute_the_motions_of_python(running, lesson, 
 EXPERIMENTS = [marked(lesson.name, number) for lesson in LESSONS for number, _ in enumerate(lesson.experiments)]
 
 
+def numbers(running: Any, lesson: str, number: int, *changes: Any) -> Any:
+    """Return the answer of the page for an experiment with changes of its settings."""
+    experiment = BY_NAME[lesson].experiments[number]
+    values = {name: value for change in (experiment.before, *changes) for name, value in change.items()}
+    return run_engines(running(lesson), lesson, experiment.scene, values, None, experiment.quantities)
+
+
+def assert_claim(claim: Claim, before: Any, after: Any) -> None:
+    value = number_of(after, claim) if claim.is_value else number_of(after, claim) / number_of(before, claim)
+    assert claim.least <= value <= claim.most, (claim, value)
+
+
 @pytest.mark.parametrize(("lesson", "number"), EXPERIMENTS)
 def test_the_claims_and_the_causes_of_an_experiment_hold(running, lesson, number):
     experiment = BY_NAME[lesson].experiments[number]
-
-    def errors(*changes: Any) -> dict[str, float]:
-        values = {name: value for change in changes for name, value in change.items()}
-        motions = run_engines(running(lesson), lesson, experiment.scene, values)["motions"]
-        return {name: np.inf if motion["error"] is None else motion["error"] for name, motion in motions.items()}
-
-    start, end = errors(experiment.before), errors(experiment.before, experiment.after)
+    start, end = numbers(running, lesson, number), numbers(running, lesson, number, experiment.after)
     for claim in experiment.claims:
-        assert claim.least <= end[claim.engine] / start[claim.engine] <= claim.most
+        assert_claim(claim, start, end)
     for change, claim in experiment.causes:
-        without = errors(experiment.before, experiment.after, change)
-        assert claim.least <= without[claim.engine] / end[claim.engine] <= claim.most, change
+        assert_claim(claim, end, numbers(running, lesson, number, experiment.after, change))
+
+
+@pytest.mark.parametrize(("lesson", "number"), EXPERIMENTS)
+def test_the_runs_contradict_every_wrong_answer_and_agree_with_the_right_one(running, lesson, number):
+    experiment, part = BY_NAME[lesson].experiments[number], BY_NAME[lesson].parts[number]
+    start, end = numbers(running, lesson, number), numbers(running, lesson, number, experiment.after)
+    for (words, is_right), guess in zip(part.answers, experiment.guesses, strict=False):
+        run = end if guess.change is None else numbers(running, lesson, number, guess.change)
+        for claim in guess.claims:
+            assert_claim(claim, start, run)
+        claims = [Claim(engine, of=guess.of) for engine in guess.times]
+        measured = [number_of(run, claim) / number_of(start, claim) for claim in claims]
+        agrees = [
+            expected / 3 < value < 3 * expected for expected, value in zip(guess.times.values(), measured, strict=True)
+        ]
+        if guess.times:
+            assert all(agrees) == is_right, (words, measured)
 
 
 LET_GO = (("four_bar", "let go"), ("slider_crank", "let go"), ("pendulum", "two links"))
@@ -151,9 +175,19 @@ def test_a_dragged_linkage_stays_closed(opened):
     page.mouse.down()
     page.mouse.move(pin["x"] + 40, pin["y"] + 30, steps=5)
     page.mouse.up()
-    page.wait_for_function("document.querySelector('.status').textContent.includes('computes this exact motion')")
-    pose = page.evaluate("window.crosscheck.setting().start")
+    page.wait_for_function("document.querySelector('.status').textContent.includes('with an error of at most')")
+    first = "crosscheck.ask({ setting: crosscheck.setting() }).then(({ exact }) => [...exact.pose.slice(0, 9)])"
+    pose = page.evaluate(first)
+    assert np.abs(pose - DrivenFourBar().mechanism().pose.ravel()).max() > 0.01
     assert np.abs(DrivenFourBar().mechanism().gap(np.reshape(pose, (3, 3)), 0.0)[:8]).max() < 1e-9
+    # The address stores what was dragged.
+    linked = opened(f"lessons/four_bar.html{page.evaluate('location.hash')}")
+    linked.wait_for_selector("#lesson.ready")
+    assert linked.evaluate(first) == pose
+    # Invalid poses are ignored.
+    other = opened("lessons/four_bar.html#set&part=1&scene=0&start=9,9,9,9,9,9,9,9,9")
+    other.wait_for_selector("#lesson.ready")
+    assert other.evaluate(first) == pytest.approx(DrivenFourBar().mechanism().pose.ravel())
 
 
 def test_the_last_iteration_of_a_pymunk_step_is_the_result_of_the_step(running):
@@ -197,25 +231,60 @@ def test_the_address_stores_only_changes_by_the_reader(opened):
     assert page.evaluate("location.hash") == ""
     page.locator("#part-1 .drag").first.focus()
     page.keyboard.press("ArrowRight")
-    assert page.evaluate("location.hash") == "#set&scene=0&0.coupler=2"
+    assert page.evaluate("location.hash") == "#set&part=1&scene=0&0.coupler=2"
     linked = opened("lessons/four_bar.html#set&scene=0&0.coupler=2&steps=99&0.crank=77&nothing&=", viewport=TALL)
     linked.wait_for_selector("#lesson.ready")
     values = "Object.fromEntries(crosscheck.form.shown().map(i => [i.name, i.value]))"
     assert linked.evaluate(values) == page.evaluate(values)
     assert "up to" in linked.inner_text(".legend .method-1")
+    # The sentence of the marked experiment has the linked number, also without the number of an experiment.
+    assert linked.inner_text("#part-1.shown .drag[data-name=coupler]") == "0.65"
+    linked = opened("lessons/four_bar.html#set&part=4&scene=1&1.steps=1", viewport=TALL)
+    linked.wait_for_selector("#lesson.ready")
+    steps = linked.text_content("#part-4.shown .drag[data-name=steps]")
+    assert steps != linked.text_content("#part-5 .drag[data-name=steps]")
+    assert steps == linked.evaluate("crosscheck.form.words('steps')")
 
 
-def test_the_answer_to_a_guess_shows_measured_errors(opened):
+def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):
     page = opened("lessons/four_bar.html", viewport=TALL, reduced_motion="reduce")
     page.wait_for_selector("#lesson.ready")
-    page.locator("#part-5 .answers button").first.click()
-    page.wait_for_selector("#part-5 .why[open]")
-    text = page.inner_text("#part-5 .measured")
-    assert text.startswith("Not so. pymunk: ")
-    assert "times as large" in text
+
+    def rows(part, answer):
+        page.locator(f"#part-{part} .answers button").nth(answer).click()
+        page.wait_for_selector(f"#part-{part} .why[open] .compared:not([hidden])")
+        cells = page.locator(f"#part-{part} .compared tbody tr").all()
+        return [row.locator("th, td").all_inner_texts() for row in cells]
+
+    assert [row[0] for row in rows(5, 0)] == ["before", "expected with your answer: The error grows a little", "now"]
+    assert page.inner_text("#part-5 .measured").startswith("Not so.")
     assert page.locator("#part-5 [data-right].right").count() == 1
-    # The picture and its legend change after the answer.
-    page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('iterations 1')")
+    before, own, right = rows(2, 0)
+    assert own[0] == "your answer: Ten times as many iterations"
+    assert own[1] == f"{before[1]}, as before"
+    assert right[0].startswith("the right answer: One setting")
+    assert "times smaller" in right[1]
+    # The picture shows the run of the answer; a click on another run shows that run.
+    page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('iterations 100')")
+    page.locator("#part-2 .compared button").last.click()
+    page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('error_bias 0 ')")
+
+
+def test_numbers_and_the_legend_change_while_a_number_is_dragged(opened):
+    page = opened("lessons/four_bar.html", viewport=TALL, reduced_motion="reduce")
+    page.wait_for_selector("#lesson.ready")
+    page.locator("#part-2 .set").click()
+    page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('up to')")
+    texts = page.evaluate(
+        """() => {
+          const number = document.querySelector('#part-2 .drag[data-name=bias]');
+          number.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight' }));
+          return [number.textContent, document.querySelector('.legend .method-1').innerText];
+        }"""
+    )
+    assert texts[0] == "0.5"
+    assert "error_bias 0.5" in texts[1]
+    assert texts[1].endswith("…")
 
 
 def test_an_exercise_accepts_its_answer_and_no_other_number(opened):

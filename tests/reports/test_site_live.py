@@ -54,6 +54,12 @@ def test_experiments_and_their_texts_use_existing_controls(lesson):
         for values in (experiment.before, experiment.after, *(change for change, _ in experiment.causes)):
             assert len(live.located(values)) == len(values)
         assert part.question or not experiment.after, part.heading
+        assert len(experiment.guesses) == (len(part.answers) if experiment.after else 0)
+        for (words, is_right), guess in zip(part.answers, experiment.guesses, strict=False):
+            assert guess.change is None or len(live.located(guess.change)) == len(guess.change)
+            # A wrong answer proposes a run, or predicts a number, or is answered by a quantity.
+            assert is_right or guess.change is not None or guess.times or experiment.quantities, words
+            assert not guess.change or guess.claims, words
         # Every experiment that changes settings of an engine has a claim on the error.
         assert experiment.claims or not set(experiment.after) - {slider.field for slider in live.sliders}, part.heading
         numbers = re.findall(r"{(\w+)}", part.text + part.after)

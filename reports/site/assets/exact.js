@@ -1,8 +1,10 @@
 // @ts-check
 /** The exact motion of mechanisms with ideal pins, slots of the ground and drives.
  *
- * The Lagrange multipliers l solve M a = f + J' l and J a = -J. v. The integrator is the classical Runge-Kutta method with
- * a projection onto the joints after each step. tests/reports/test_site_in_browser.py compares it with the reference. */
+ * The Lagrange multipliers l solve M a = f + J' l and J a = -J. v. The integrator is the extrapolated midpoint method of
+ * Gragg, Bulirsch and Stoer, with a projection onto the joints after each step. A mechanism whose drives prescribe the
+ * whole motion is not integrated: Newton's method solves its joints at each sample.
+ * tests/reports/test_site_in_browser.py compares both with the reference. */
 
 import { placed } from "./motion.js";
 
@@ -11,7 +13,10 @@ import { placed } from "./motion.js";
  *   drives: {first: number, second: number, rate: number}[]}} Mechanism inertia: m, m, I of each body [kg, kg m^2] */
 /** @typedef {{columns: number[], gap: number, rate: number, bias: number}} Row one equation: J v = rate, J a = bias */
 
-const STEP = 5e-4; // largest step [s]
+export const FINE = 1e-12; // accepted error of the last but one column of an extrapolation, relative to the state
+export const ROUGH = 1e-10; // the same for the motion that checks the fine one
+const COLUMNS = 8; // largest number of columns of an extrapolation; the midpoint method takes 2, 4, 6, ... steps
+const SHORTEST = 2 ** -12; // smallest fraction of a sample interval; shorter steps do not help near a singular position
 const ROUNDS = 3; // number of Newton iterations that close the joints after a step
 
 /** Return the vector from the centre of a body to its point, in world directions; for the ground the point itself. @param {ArrayLike<number>} pose @param {number} body @param {number[]} point */
@@ -131,9 +136,13 @@ export function dragged(mechanism, pose, body, point, wanted) {
   return rows(mechanism, found, found, null).every(({ gap }) => Math.abs(gap) < 1e-9 * size) ? found : Float64Array.from(pose);
 }
 
-/** Return the mechanism released at a pose: at rest, apart from drives. @param {Mechanism} mechanism @param {ArrayLike<number>} pose @returns {Mechanism} */
+/** Return the mechanism released at the nearest pose with closed joints: at rest, apart from drives. Without such a pose the
+ * mechanism keeps its own start. @param {Mechanism} mechanism @param {ArrayLike<number>} pose @returns {Mechanism} */
 export function released(mechanism, pose) {
   const [place, twist] = [Float64Array.from(pose), new Float64Array(pose.length)];
+  if (pose.length !== mechanism.pose.length) return mechanism;
+  close(mechanism, place, null, 4 * ROUNDS);
+  if (!rows(mechanism, place, place, null).every(({ gap }) => Math.abs(gap) < 1e-9)) return mechanism;
   const offsets = offsetsOf(mechanism, place);
   steer(mechanism, place, twist, offsets);
   return { ...mechanism, pose: [...place], twist: [...twist] };
@@ -168,35 +177,71 @@ export function freedoms(mechanism) {
   return mechanism.pose.length - rank;
 }
 
-/** Return poses and twists at `samples` intervals of `spacing` [s], and the forces of joints on their second bodies [N],
- * by steps of STEP / `finer` or less. @param {Mechanism} mechanism @param {number} samples @param {number} spacing @param {number} finer */
-export function motion(mechanism, samples, spacing, finer = 1) {
+/** Advance a pose and a twist, by one extrapolation; false if it did not converge to `tolerance`.
+ * @param {Mechanism} mechanism @param {Float64Array} pose @param {Float64Array} twist @param {number[]} start @param {number} time [s] @param {number} tolerance */
+function extrapolate(mechanism, pose, twist, start, time, tolerance) {
+  const width = pose.length;
+  const state = Float64Array.of(...pose, ...twist);
+  const rates = (/** @type {Float64Array} */ at) => {
+    const found = new Float64Array(2 * width);
+    found.set(at.subarray(width));
+    found.set(acceleration(mechanism, at.subarray(0, width), at.subarray(width), start).change, width);
+    return found;
+  };
+  const first = rates(state);
+  const scale = Math.max(1, ...state.map(Math.abs));
+  /** @type {Float64Array[]} */
+  let row = [];
+  for (let column = 0; column < COLUMNS; column++) {
+    const steps = 2 * (column + 1);
+    const h = time / steps;
+    let [old, now] = [state, state.map((value, k) => value + h * first[k])];
+    for (let step = 1; step < steps; step++) {
+      const by = rates(now);
+      [old, now] = [now, old.map((value, k) => value + 2 * h * by[k])];
+    }
+    const by = rates(now);
+    const next = [now.map((value, k) => (value + old[k] + h * by[k]) / 2)];
+    for (let k = 0; k < column; k++) {
+      const ratio = (steps / (2 * (column - k))) ** 2 - 1;
+      next.push(next[k].map((value, index) => value + (value - row[k][index]) / ratio));
+    }
+    row = next;
+    if (column && Math.max(...row[column].map((value, k) => Math.abs(value - row[column - 1][k]))) <= tolerance * scale) {
+      pose.set(row[column].subarray(0, width));
+      twist.set(row[column].subarray(width));
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Return poses and twists at `samples` intervals of `spacing` [s], and the forces of joints on their second bodies [N].
+ * @param {Mechanism} mechanism @param {number} samples @param {number} spacing @param {number} tolerance */
+export function motion(mechanism, samples, spacing, tolerance = FINE) {
   const width = mechanism.inertia.length;
   const pose = Float64Array.from(mechanism.pose);
   const twist = Float64Array.from(mechanism.twist);
   const start = offsetsOf(mechanism, pose);
   const offsets = (/** @type {number} */ t) => start.map((angle, index) => angle + mechanism.drives[index].rate * t);
+  const prescribed = rows(mechanism, pose, twist, start).length === width;
   const out = { pose: new Float64Array((samples + 1) * width), twist: new Float64Array((samples + 1) * width), forces: mechanism.joints.map(({ name }) => ({ name, at: /** @type {number[]} */ ([]), force: /** @type {number[]} */ ([]) })) };
-  const steps = finer * Math.ceil(spacing / STEP);
-  const h = spacing / steps;
-  const moved = (/** @type {Float64Array} */ from, /** @type {ArrayLike<number>} */ by, /** @type {number} */ time) => from.map((value, k) => value + time * by[k]);
+  let part = 1; // step as a fraction of `spacing`
   for (let sample = 0; sample <= samples; sample++) {
-    for (let step = 0; sample && step < steps; step++) {
-      const now = (sample - 1) * spacing + step * h;
-      const at = (/** @type {Float64Array} */ q, /** @type {Float64Array} */ v) => acceleration(mechanism, q, v, start).change;
-      const a1 = at(pose, twist);
-      const v2 = moved(twist, a1, h / 2);
-      const a2 = at(moved(pose, twist, h / 2), v2);
-      const v3 = moved(twist, a2, h / 2);
-      const a3 = at(moved(pose, v2, h / 2), v3);
-      const v4 = moved(twist, a3, h);
-      const a4 = at(moved(pose, v3, h), v4);
-      for (let k = 0; k < width; k++) {
-        pose[k] += (h / 6) * (twist[k] + 2 * v2[k] + 2 * v3[k] + v4[k]);
-        twist[k] += (h / 6) * (a1[k] + 2 * a2[k] + 2 * a3[k] + a4[k]);
+    for (let done = sample ? 0 : 1; done < 1; ) {
+      const by = (prescribed ? (tolerance > FINE ? 0.5 : 0.25) : part) * spacing;
+      if (prescribed) {
+        const { change } = acceleration(mechanism, pose, twist, start);
+        pose.forEach((value, k) => (pose[k] = value + by * twist[k] + 0.5 * by * by * change[k]));
+      } else if (!extrapolate(mechanism, pose, twist, start, by, part > SHORTEST ? tolerance : Infinity)) {
+        part /= 2;
+        continue;
       }
-      close(mechanism, pose, offsets(now + h), ROUNDS - 1);
-      steer(mechanism, pose, twist, offsets(now + h));
+      done += by / spacing;
+      const now = offsets((sample - 1 + done) * spacing);
+      close(mechanism, pose, now, prescribed ? 2 * ROUNDS : ROUNDS - 1);
+      steer(mechanism, pose, twist, now);
+      if (done % (2 * part) === 0) part = Math.min(1, 2 * part);
     }
     out.pose.set(pose, sample * width);
     out.twist.set(twist, sample * width);

@@ -67,15 +67,17 @@ export class Form {
     return this.inputs.filter(({ name }) => !name.includes(".") || name.startsWith(`${this.index}.`));
   }
 
-  /** Write the value of each slider beside it and in the text; disable the sliders in `idle`. @param {string[]} idle */
-  label(idle) {
+  /** Write the value of each slider beside it and in the text; disable the sliders in `idle`. @param {string[]} idle
+   * @param {Record<string, string>} own values that the methods choose, by the name of the slider */
+  label(idle, own) {
     for (const group of this.form.querySelectorAll("fieldset[data-scene]")) {
       if (group instanceof HTMLElement) group.hidden = group.dataset.scene !== this.choice.value;
     }
     for (const input of this.shown()) {
       const name = input.name.split(".").at(-1) ?? "";
       input.disabled = idle.includes(name);
-      const text = input.disabled ? "no effect here" : this.words(name);
+      const chosen = this.value(name) === null && own[name] ? ` (${own[name]})` : "";
+      const text = input.disabled ? "no effect here" : this.words(name) + chosen;
       const output = input.closest("label")?.querySelector(".value");
       if (output) output.textContent = text;
       input.setAttribute("aria-valuetext", text);
@@ -83,7 +85,8 @@ export class Form {
     for (const number of this.root.querySelectorAll(".part.shown .drag")) {
       if (!(number instanceof HTMLElement)) continue;
       const input = this.input(number.dataset.name ?? "");
-      number.textContent = this.words(number.dataset.name ?? "");
+      const name = number.dataset.name ?? "";
+      number.textContent = this.value(name) === null ? (own[name] ?? number.textContent) : this.words(name);
       number.setAttribute("aria-valuenow", input?.value ?? "0");
       number.setAttribute("aria-valuemax", input?.max ?? "0");
       number.setAttribute("aria-valuetext", number.textContent ?? "");
@@ -96,7 +99,7 @@ export class Form {
     const to = (/** @type {number} */ place) => {
       const own = Number(part?.dataset.scene);
       if (own !== this.index) this.move(own, JSON.parse(part?.dataset.before ?? "{}"));
-      for (const other of this.root.querySelectorAll(".part")) other.classList.toggle("shown", other === part);
+      this.mark(part);
       const input = this.input(number.dataset.name ?? "");
       const wanted = String(Math.min(Math.max(place, 0), Number(input?.max)));
       if (!input || input.value === wanted) return;
@@ -131,21 +134,38 @@ export class Form {
     }
   }
 
-  /** Return the link that stores the sliders. */
-  get link() {
-    return `${LINK}${[`scene=${this.index}`, ...this.shown().filter(({ value, defaultValue }) => value !== defaultValue).map(({ name, value }) => `${name}=${value}`)].join("&")}`;
+  /** Mark the experiment to which the picture belongs. @param {Element|null|undefined} part */
+  mark(part) {
+    for (const other of this.root.querySelectorAll(".part")) other.classList.toggle("shown", other === part);
   }
 
-  /** Set the sliders from a link and return whether the link stores sliders; invalid parts are ignored. @param {string} link */
+  /** Return the link that stores the marked experiment, the sliders and the poses of release. @param {number[]|null} start */
+  link(start) {
+    const parts = [...this.root.querySelectorAll(".part")];
+    const part = 1 + parts.findIndex((each) => each.classList.contains("shown"));
+    const released = start ? [`start=${start.join(",")}`] : [];
+    return `${LINK}${[`part=${part}`, `scene=${this.index}`, ...released, ...this.shown().filter(({ value, defaultValue }) => value !== defaultValue).map(({ name, value }) => `${name}=${value}`)].join("&")}`;
+  }
+
+  /** Set the sliders from a link and mark its experiment. Returns that experiment and the poses of release, or null if the link
+   * stores no sliders; invalid parts are ignored. @param {string} link
+   * @returns {{part: Element|undefined, start: number[]|null}|null} */
   restore(link) {
-    if (!link.startsWith(LINK)) return false;
-    const given = link.slice(LINK.length).split("&").map((part) => part.split("=")).filter(([, value]) => /^\d+$/.test(value ?? ""));
+    if (!link.startsWith(LINK)) return null;
+    const all = link.slice(LINK.length).split("&").map((part) => part.split("="));
+    const given = all.filter(([, value]) => /^\d+$/.test(value ?? ""));
     const scene = Number(given.find(([name]) => name === "scene")?.[1] ?? 0);
     this.move(scene < this.scenes.length ? scene : 0, {});
     for (const [name, value] of given) {
       const input = this.inputs.find((each) => each.name === name);
       if (input && Number(value) <= Number(input.max)) input.value = value;
     }
-    return true;
+    const parts = /** @type {HTMLElement[]} */ ([...this.root.querySelectorAll(".part")]);
+    const ours = parts.filter((each) => Number(each.dataset.scene) === this.index);
+    const named = parts[Number(given.find(([name]) => name === "part")?.[1]) - 1];
+    const part = ours.includes(named) ? named : ours[0];
+    this.mark(part);
+    const start = (all.find(([name]) => name === "start")?.[1] ?? "").split(",").map(Number);
+    return { part, start: start.length > 2 && start.every(Number.isFinite) ? start : null };
   }
 }

@@ -6,6 +6,7 @@ import { dragged } from "./exact.js";
 import { Form } from "./form.js";
 import { placed, told, UNITS } from "./motion.js";
 import { Player } from "./player.js";
+import { worded } from "./quantities.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting */
 /** @typedef {any} Answer the result of `answer` in worker.js */
@@ -26,10 +27,13 @@ let worker = null;
 /** @type {Map<number, {resolve: (told: any) => void, reject: (why: Error) => void}>} */
 const asked = new Map();
 let number = 0;
+let scrolled = false; // whether the reader has scrolled; only then the experiment in the window is shown
+let jumping = false; // whether the next scrolling is the page's own
 /** @type {Answer} */
 let shown = null;
 /** @type {number[]|null} the poses at which the reader released the mechanism */
 let start = null;
+let startScene = -1; // the scene of these poses
 /** @type {{setting: Setting, play: boolean, ways: Record<string, string>}|null} the last
  * request that waits for a run to end, with the label of each engine's method */
 let waiting = null;
@@ -64,10 +68,17 @@ function failed(reason) {
   find(".status").textContent = `The engines could not be run: ${reason instanceof Error ? reason.message : reason}`;
 }
 
-/** Run the settings of the form; of the requests during a run, only the last one is answered. @param {boolean} play */
+/** Run the settings of the form; of the requests during a run, only the last one is answered. The labels and the legend show
+ * the new settings at once. @param {boolean} play */
 function run(play) {
+  if (startScene !== form.index) start = null;
   const ways = Object.fromEntries(Object.keys(NAMES).map((name) => [name, [form.words(name), ...form.changed(name)].join(", ")]));
   waiting = { setting: form.setting(start), play, ways };
+  form.label(shown?.idle ?? [], shown?.own ?? {});
+  for (const name in NAMES) {
+    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}`;
+    find(`.legend .method-${MARKS[name]} .figure`).textContent = "…";
+  }
   if (!busy) requestAnimationFrame(next);
 }
 
@@ -77,7 +88,12 @@ async function next() {
   [waiting, busy] = [null, true];
   try {
     load();
-    show(await ask({ setting }), play, ways);
+    const answer = await ask({ setting });
+    show(answer, play, ways);
+    if (answer.exact.computed && !waiting) {
+      const missed = await ask({ kind: "check", setting });
+      if (shown === answer) find(".status").textContent = statusOf(answer, missed);
+    }
   } catch (reason) {
     failed(reason);
   }
@@ -129,8 +145,8 @@ function show(answer, play, ways) {
     entry.classList.toggle("lost", name in lost);
     if (name in lost) find(`.legend .method-${MARKS[name]} .figure`).textContent = lost[name];
   }
-  form.label(answer.idle);
-  find(".status").textContent = statusOf(answer);
+  form.label(answer.idle, answer.own);
+  find(".status").textContent = statusOf(answer, null);
   root.classList.add("ready");
   find(".next").hidden = !motions.some((/** @type {any} */ { name, impulses }) => name === "munk" && impulses) || !answer.joints.length;
   find(".sweeps").hidden = true;
@@ -151,67 +167,140 @@ function springWords(spring, { joints, blades, motions, forces }) {
   return `MuJoCo enforces this ${contact ? "contact" : "loop"} by a spring and a damper: a gap decays in about ${told(2000 / b)} ms, and an acceleration a that opens it leaves a gap of (1 − d)/(d k) a: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
 }
 
-/** @param {Answer} answer */
-function statusOf({ exact, motions, versions, release }) {
-  const missed = exact.missed === null ? "" : `The page computes this exact motion itself, with an error of at most ${told(Math.max(exact.missed, 1e-15))} m or rad. `;
+/** @param {Answer} answer @param {number|null} missed the error of the page's exact motion; null: not known */
+function statusOf({ exact, motions, versions, release }, missed) {
+  const error = missed === null ? "" : `, with an error of at most ${told(Math.max(missed, 1e-15))} m or rad`;
+  const own = exact.computed ? `The page computes this exact motion itself${error}. ` : "";
   const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) =>
     `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python differ by at most ${told(by)} m or rad.`);
-  return missed + apart.join(" ");
+  return own + apart.join(" ");
 }
 
-/** Show an experiment in the picture. @param {HTMLElement} part @param {"before"|"after"} which @param {boolean} play */
-function stageOf(part, which, play) {
+/** Show an experiment in the picture, with the positions of sliders that differ from the experiment's start.
+ * @param {HTMLElement} part @param {Record<string, number>} places @param {boolean} play */
+function stageOf(part, places, play) {
   start = null;
-  const { scene, before, after, shown: on } = part.dataset;
-  const places = { ...JSON.parse(before ?? "{}"), ...(which === "after" ? JSON.parse(after ?? "{}") : {}) };
-  form.move(Number(scene), places);
-  player.boxes.forEach((box) => (box.checked = (on ?? "").split(" ").includes(box.value)));
-  for (const other of root.querySelectorAll(".part")) other.classList.toggle("shown", other === part);
+  scrolled = false;
+  select(part, places);
+  player.boxes.forEach((box) => (box.checked = (part.dataset.shown ?? "").split(" ").includes(box.value)));
+  form.mark(part);
   run(play);
 }
 
-/** Run the settings before and after the change; show both errors and the explanation. @param {HTMLElement} part @param {HTMLElement} button */
+/** Set the sliders. @param {HTMLElement} part @param {Record<string, number>} places */
+function select(part, places) {
+  form.move(Number(part.dataset.scene), { ...JSON.parse(part.dataset.before ?? "{}"), ...places });
+}
+
+/** Run the settings before and after the change, and those that a wrong answer proposes; show them side by side.
+ * @param {HTMLElement} part @param {HTMLElement} button */
 async function guessed(part, button) {
   for (const each of part.querySelectorAll(".answers button")) {
     each.classList.toggle("chosen", each === button);
     each.setAttribute("aria-pressed", String(each === button));
     each.classList.toggle("right", each instanceof HTMLElement && each.dataset.right !== undefined);
   }
-  const measured = /** @type {HTMLElement} */ (part.querySelector(".measured"));
+  const right = button.dataset.right !== undefined;
   const why = /** @type {HTMLDetailsElement} */ (part.querySelector(".why"));
-  const right = button.dataset.right !== undefined ? "Right." : "Not so.";
+  const said = /** @type {HTMLElement} */ (part.querySelector(".measured"));
+  const verdict = right ? "Right." : "Not so.";
   if (part.dataset.after === "{}") {
-    [why.open, measured.textContent] = [true, right]; // the question is not about an engine
+    [why.open, said.textContent] = [true, verdict]; // the question is not about an engine
     return;
   }
+  const own = right || !button.dataset.change ? null : JSON.parse(button.dataset.change);
+  const after = JSON.parse(part.dataset.after ?? "{}");
+  const quantities = JSON.parse(part.dataset.quantities ?? "[]");
+  const proposed = own && Object.keys(own).length > 0;
+  /** @type {{label: string, places: Record<string, number>}[]} */
+  const runs = [{ label: "before", places: {} }];
+  if (proposed) runs.push({ label: `your answer: ${button.textContent}`, places: own });
+  runs.push({ label: proposed ? `the right answer: ${part.querySelector("[data-right]")?.textContent}` : "now", places: after });
   load();
-  stageOf(part, "before", false);
-  const before = await ask({ setting: form.setting(null) }).catch(failed);
-  stageOf(part, "after", true);
-  const after = await ask({ setting: form.setting(null) }).catch(failed);
+  const answers = [];
+  for (const { places } of runs) {
+    select(part, places);
+    answers.push(await ask({ setting: form.setting(null), quantities }).catch(failed));
+  }
+  stageOf(part, runs[1].places, true);
   why.open = true;
-  const verdict = button.dataset.right === undefined ? "Not so." : "Right.";
-  measured.textContent = before && after ? `${verdict} ${compared(before, after)}` : verdict;
+  said.textContent = answers.includes(undefined) ? verdict : `${verdict} Largest errors:`;
+  if (!answers.includes(undefined)) compare(part, runs, answers, right ? null : button);
 }
 
-/** @param {Answer} before @param {Answer} after */
-function compared(before, after) {
-  const unit = UNITS[/** @type {"angle"|"position"} */ (after.measure)];
-  return after.motions.map((/** @type {any} */ { name, error }) => {
-    const old = before.motions.find((/** @type {any} */ one) => one.name === name)?.error;
-    const own = NAMES[name];
-    if (!(old > 0) || !(error > 0)) return `${own}: largest error ${told(error)} ${unit}.`;
-    const ratio = Math.max(error / old, old / error);
-    const times = Number(ratio.toPrecision(2)).toLocaleString("en");
-    const by = ratio < 1.05 ? "as before" : `${times} times ${error > old ? "as large" : "smaller"}`;
-    return `${own}: ${told(old)} ${unit} before, ${told(error)} ${unit} now, ${by}.`;
-  }).join(" ");
+/** Fill the table of the runs of a question; a click on the name of a run shows it in the picture.
+ * @param {HTMLElement} part @param {{label: string, places: Record<string, number>}[]} runs @param {Answer[]} answers
+ * @param {HTMLElement|null} wrong the wrong answer, whose prediction gets a line */
+function compare(part, runs, answers, wrong) {
+  const table = /** @type {HTMLTableElement} */ (part.querySelector(".compared"));
+  const exact = answers.some(({ quantities }) => quantities.some((/** @type {any} */ each) => each.found.exact));
+  const names = [...(exact ? ["exact"] : []), ...Object.keys(NAMES).filter((name) => answers.some(({ motions }) => motions.some((/** @type {any} */ each) => each.name === name)))];
+  const [head, body] = [document.createElement("thead"), document.createElement("tbody")];
+  const title = head.insertRow();
+  for (const name of ["run", ...names]) title.append(Object.assign(document.createElement("th"), { scope: "col", textContent: NAMES[name] ?? (name === "exact" ? "exact motion" : name) }));
+  runs.forEach(({ label, places }, index) => {
+    const row = body.insertRow();
+    const show = Object.assign(document.createElement("button"), { type: "button", textContent: label });
+    show.addEventListener("click", () => stageOf(part, places, true));
+    const heading = Object.assign(document.createElement("th"), { scope: "row" });
+    heading.append(show);
+    row.append(heading);
+    for (const name of names) row.insertCell().textContent = cell(name, answers[index], index ? answers[0] : null);
+  });
+  const times = JSON.parse(wrong?.dataset.times ?? "{}");
+  if (wrong && Object.keys(times).length) {
+    const row = body.insertRow(1);
+    row.append(Object.assign(document.createElement("th"), { scope: "row", textContent: `expected with your answer: ${wrong.textContent}` }));
+    for (const name of names) row.insertCell().textContent = expected(name, times[name], answers[0], wrong.dataset.of);
+  }
+  table.replaceChildren(head, body);
+  table.hidden = false;
+}
+
+/** Return the error and the quantities of one motion, compared with those before. @param {string} name @param {Answer} answer @param {Answer|null} before */
+function cell(name, answer, before) {
+  const unit = UNITS[/** @type {"angle"|"position"} */ (answer.measure)];
+  const error = answer.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+  const old = before?.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+  const missing = name === "exact" ? [] : [name in answer.lost ? "cannot be run here" : "–"];
+  const errors = error === undefined ? missing : [`${told(error)}${Number.isFinite(error) ? ` ${unit}` : ""}${ratio(error, old)}`];
+  const numbers = answer.quantities.filter((/** @type {any} */ each) => each.found[name] !== undefined && (each.found[name] || each.kind === "bend"));
+  return [...errors, ...numbers.map((/** @type {any} */ each) => `${each.words} ${worded(each.kind, each.found[name])}`)].join("; ");
+}
+
+/** @param {number} error @param {number|undefined} old */
+function ratio(error, old) {
+  if (old === undefined || !(old > 0) || !(error > 0)) return "";
+  const by = Math.max(error / old, old / error);
+  const times = Number(by.toPrecision(2)).toLocaleString("en");
+  return by < 1.05 ? ", as before" : `, ${times} times ${error > old ? "as large" : "smaller"}`;
+}
+
+/** Return what a wrong answer predicts. @param {string} name @param {number|undefined} times @param {Answer} before @param {string|undefined} of */
+function expected(name, times, before, of) {
+  if (times === undefined) return "";
+  const quantity = before.quantities.find((/** @type {any} */ { kind }) => kind === of);
+  if (quantity) return `${quantity.words} ${worded(quantity.kind, quantity.found[name]?.map((/** @type {number} */ value) => value * times))}`;
+  const old = before.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+  return old === undefined ? "" : `about ${told(old * times)} ${UNITS[/** @type {"angle"|"position"} */ (before.measure)]}`;
 }
 
 /** Store changes by the reader in the address. */
 function changed() {
-  history.replaceState(history.state, "", form.link);
+  if (startScene !== form.index) start = null;
+  history.replaceState(history.state, "", form.link(start));
   run(true);
+}
+
+/** Restore the state that the address stores. @returns {boolean} */
+function restored() {
+  const found = form.restore(location.hash);
+  if (!found) return false;
+  [start, startScene] = [found.start, form.index];
+  run(false);
+  jumping = true;
+  found.part?.scrollIntoView();
+  return true;
 }
 
 function begin() {
@@ -220,7 +309,7 @@ function begin() {
     for (const button of part.querySelectorAll(".answers button")) {
       if (button instanceof HTMLElement) button.addEventListener("click", () => guessed(part, button));
     }
-    part.querySelector(".set")?.addEventListener("click", () => stageOf(part, "before", true));
+    part.querySelector(".set")?.addEventListener("click", () => stageOf(part, {}, true));
   }
   for (const button of root.querySelectorAll("button[data-way]")) {
     if (!(button instanceof HTMLElement)) continue;
@@ -253,25 +342,28 @@ function begin() {
     held ??= shown.exact.pose.slice(player.frame * width, (player.frame + 1) * width);
     return (held = dragged(shown.mechanism, /** @type {Float64Array} */ (held), body, point, wanted));
   }, () => {
-    start = held && [...held];
+    // The address stores these digits; the page closes the joints again.
+    start = held && [...held].map((value) => Number(value.toFixed(4)));
+    startScene = form.index;
     held = null;
-    run(true);
+    changed();
   });
+  addEventListener("scroll", () => {
+    if (!jumping) scrolled = true;
+    jumping = false;
+  }, { passive: true });
   // The picture shows the experiment in the middle of the window. The first experiment loads the engines.
-  const linked = form.restore(location.hash);
+  const linked = restored();
   const parts = [...root.querySelectorAll(".part")];
-  if (linked) run(false);
-  let moved = linked; // becomes false when the reader scrolls away from the experiment that the link has opened
   const looking = new IntersectionObserver((entries) => {
     const near = entries.filter(({ target, isIntersecting }) => isIntersecting && !target.classList.contains("shown"));
-    for (const { target } of moved ? [] : near) {
-      if (target instanceof HTMLElement && !target.querySelector(".answers .chosen")) stageOf(target, "before", true);
+    for (const { target } of scrolled ? near : []) {
+      if (target instanceof HTMLElement && !target.querySelector(".answers .chosen")) stageOf(target, {}, true);
     }
-    if (near.length) moved = false;
   }, { rootMargin: "-25% 0px -70% 0px" });
   for (const part of parts) looking.observe(part);
-  if (!linked && parts[0] instanceof HTMLElement) stageOf(parts[0], "before", true);
-  addEventListener("hashchange", () => form.restore(location.hash) && run(false));
+  if (!linked && parts[0] instanceof HTMLElement) stageOf(parts[0], {}, true);
+  addEventListener("hashchange", restored);
   Object.assign(window, { crosscheck: { ask, form, setting: () => form.setting(start) } });
 }
 

@@ -1,7 +1,7 @@
 // @ts-check
 /** The data of scenes: models, exact motions and drawings at every position of the sliders. */
 
-import { motion, released } from "./exact.js";
+import { FINE, ROUGH, motion, released } from "./exact.js";
 
 /**
  * @typedef {{text: string, bodies: number[], links: number[][], idle: string[]}} Text
@@ -48,9 +48,8 @@ export function mechanismOf(run) {
   return start ? released({ ...equations, joints }, start) : { ...equations, joints };
 }
 
-/** Return the exact motion at the samples, from the reference or by the page. `missed`: change of the page's motion with
- * half the step; null for the reference. @param {Run} run
- * @returns {{pose: Float64Array, twist: Float64Array, forces: import("./motion.js").Force[], missed: number|null}} */
+/** Return the exact motion at the samples. `computed`: whether the page has computed it, and not the reference. @param {Run} run
+ * @returns {{pose: Float64Array, twist: Float64Array, forces: import("./motion.js").Force[], computed: boolean}} */
 export function truth(run) {
   const { scene, at, start, samples } = run;
   if (at.truth !== null && !start) {
@@ -58,13 +57,20 @@ export function truth(run) {
     const whole = doubles(at.truth);
     const stride = (scene.frames / samples) * width;
     const states = Array.from({ length: samples + 1 }, (_, frame) => whole.subarray(frame * stride, frame * stride + width));
-    return { ...split(states), forces: [], missed: null };
+    return { ...split(states), forces: [], computed: false };
   }
-  const mechanism = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
-  const spacing = run.every * run.step;
-  const found = motion(mechanism, samples, spacing, 2);
-  const rough = motion(mechanism, samples, spacing);
-  return { ...found, missed: found.pose.reduce((most, value, index) => Math.max(most, Math.abs(value - rough.pose[index])), 0) };
+  return { ...computed(run, FINE), computed: true };
+}
+
+/** Compute the motion of a pinned linkage. @param {Run} run @param {number} tolerance */
+function computed(run, tolerance) {
+  return motion(/** @type {import("./exact.js").Mechanism} */ (mechanismOf(run)), run.samples, run.every * run.step, tolerance);
+}
+
+/** Return the largest difference between the computed exact motion and one with a tolerance that is a hundred times as large. @param {Run} run */
+export function missed(run) {
+  const [fine, rough] = [FINE, ROUGH].map((tolerance) => computed(run, tolerance).pose);
+  return fine.reduce((most, value, index) => Math.max(most, Math.abs(value - rough[index])), 0);
 }
 
 /** Split states into poses and twists. @param {ArrayLike<number>[]} states of every sample, six numbers a body */

@@ -15,15 +15,28 @@ export function runMujoco(mujoco, run) {
   const model = mujoco.MjModel.from_xml_string(told.text);
   const data = new mujoco.MjData(model);
   try {
+    const own = chosen(model);
     set(model, run);
     mujoco.mj_resetDataKeyframe(model, data, 0);
     if (run.start) begin(run, told, data);
     mujoco.mj_forward(model, data);
-    return { ...states(run, told, mujoco, model, data), spring: data.nefc ? [...data.efc_KBIP.slice(0, 3)] : null };
+    return { ...states(run, told, mujoco, model, data), spring: data.nefc ? [...data.efc_KBIP.slice(0, 3)] : null, own };
   } finally {
     data.delete();
     model.delete();
   }
+}
+
+/** Return the settings that the method itself chooses, as texts of the controls. @param {any} model @returns {Record<string, string>} */
+function chosen(model) {
+  const { opt } = model;
+  const kind = model.neq ? "eq" : "pair";
+  const constant = model[`${kind}_solref`][0];
+  const short = (/** @type {number} */ value, /** @type {number} */ digits) => String(Number(value.toPrecision(digits)));
+  return {
+    integrator: ["Euler", "RK4", "implicit", "implicitfast"][opt.integrator] ?? "", solverIterations: String(opt.iterations), tolerance: short(opt.tolerance, 2),
+    ...(model.neq + model.npair ? { timeConstant: constant > 0 ? `${short(1000 * constant, 2)} ms` : "given by a stiffness", impedance: short(model[`${kind}_solimp`][0], 4) } : {}),
+  };
 }
 
 /** Apply the sliders of MuJoCo; null keeps the value of the method. @param {any} model @param {Run} run */
@@ -110,7 +123,8 @@ export function runMunk(munk, run, last = 0) {
     munk._munk_run(given, plan.length, run.step / unit, unit, iterations, bias, run.samples, run.every, last, out);
     const found = Float64Array.from(munk.HEAPF64.subarray(out / 8, out / 8 + size));
     const rows = Array.from({ length: states_ }, (_, index) => fromOrigins(found.subarray(6 * bodies * index, 6 * bodies * (index + 1)), plan));
-    return { ...split(rows), impulses: found.subarray(6 * bodies * states_), iterations, left: unit === 1 ? bias ** run.step : bias };
+    return { ...split(rows), impulses: found.subarray(6 * bodies * states_), iterations, left: unit === 1 ? bias ** run.step : bias,
+      own: { iterations: String(plan[HEAD - 3]), bias: String(Number(plan[HEAD - 2].toPrecision(2))) } };
   } finally {
     munk._free(given);
     munk._free(out);

@@ -1,9 +1,10 @@
 // @ts-check
 /** A worker that runs the engines: it receives settings and sends motions. */
 
-import { doubles, mechanismOf, modelOf, runOf, truth } from "./live_data.js";
+import { doubles, mechanismOf, missed, modelOf, runOf, truth } from "./live_data.js";
 import { load, runMujoco, runMunk } from "./live_engines.js";
 import { errors, finite } from "./motion.js";
+import { measured } from "./quantities.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting @typedef {import("./live_data.js").Name} Name
  * @typedef {import("./live_data.js").Scene} Scene */
@@ -21,11 +22,13 @@ async function sceneOf(key) {
   return known;
 }
 
-/** Return the motions, drawing and errors for a setting. @param {Setting} setting @param {{mujoco: any, munk: any}} engines */
-async function answer(setting, engines) {
+/** Return the motions, drawing, errors and quantities for a setting. @param {Setting} setting @param {{mujoco: any, munk: any}} engines
+ * @param {import("./quantities.js").Quantity[]} quantities */
+async function answer(setting, engines, quantities) {
   const scene = await sceneOf(setting.key);
   const run = runOf(setting, scene);
   const exact = truth(run);
+  /** @type {any[]} */
   const motions = [];
   /** @type {Record<string, string>} */
   const lost = {};
@@ -47,12 +50,21 @@ async function answer(setting, engines) {
   }
   const { measure, bodies, window, frames, centre, versions } = scene;
   const stretch = run.samples / frames;
-  return {
-    measure, bodies, centre, versions, exact, motions, lost,
+  const taken = {
+    exact, joints: run.at.joints,
+    forces: exact.computed ? exact.forces : run.at.forces,
     window: window.map((frame) => Math.round(frame * stretch)),
     t: Float64Array.from({ length: run.samples + 1 }, (_, index) => index * run.every * run.step),
-    drawing: run.at.drawing, joints: run.at.joints, blades: run.at.blades, traces: run.at.traces,
-    forces: exact.missed === null ? run.at.forces : exact.forces,
+  };
+  return {
+    ...taken, measure, bodies, centre, versions, motions, lost,
+    quantities: quantities.map((each) => ({
+      ...each,
+      found: Object.fromEntries([["exact", exact], ...motions.map((motion) => [motion.name, motion])].map(([name, states]) =>
+        [name, measured(each, { ...taken, bodies: bodies.length }, states)])),
+    })),
+    own: Object.assign({}, ...motions.map(({ own }) => own)), // settings that the methods choose
+    drawing: run.at.drawing, blades: run.at.blades, traces: run.at.traces,
     mechanism: mechanismOf(run), release: engines.mujoco?.mj_versionString() ?? "",
     // Sliders without an effect on this model are disabled.
     idle: [...modelOf(run, "munk").idle, ...modelOf(run, "mujoco").idle],
@@ -77,15 +89,16 @@ async function sweeps(setting, frame) {
   return { found, whole, which: modelOf(run, "munk").impulses, step: run.step };
 }
 
-onmessage = async ({ data: { id, kind, setting, frame, packages, wanted, folder: where } }) => {
+onmessage = async ({ data: { id, kind, setting, frame, quantities, packages, wanted, folder: where } }) => {
   try {
     if (kind === "load") {
       folder = where;
       loading = load(packages, wanted);
       await loading;
       postMessage({ id, told: {} });
-    } else if (kind === "sweeps") postMessage({ id, told: await sweeps(setting, frame) });
-    else postMessage({ id, told: await answer(setting, await /** @type {Promise<any>} */ (loading)) });
+    } else if (kind === "check") postMessage({ id, told: missed(runOf(setting, await sceneOf(setting.key))) });
+    else if (kind === "sweeps") postMessage({ id, told: await sweeps(setting, frame) });
+    else postMessage({ id, told: await answer(setting, await /** @type {Promise<any>} */ (loading), quantities ?? []) });
   } catch (reason) {
     postMessage({ id, why: reason instanceof Error ? reason.message : String(reason) });
   }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from reference.scenes.person import SEGMENT_NAMES, OneFoot, TwoFeet
-from reports.site.lesson import BOTH, Claim, Experiment, Lesson
+from reports.site.lesson import BOTH, Claim, Experiment, Guess, Lesson
 from reports.site.lessons.linkages import PENDULUM
 from reports.site.live.sliders import Live, Point
 
@@ -38,7 +38,13 @@ CHAINS = Lesson(
     (PENDULUM.scene("two links"), ONE, TWO),
     (
         Experiment("two links", BOTH),
-        Experiment("on one foot", RK4, {"steps": 500}, (Claim("mujoco", most=1e-3), Claim("munk", most=0.3))),
+        Experiment(
+            "on one foot",
+            RK4,
+            {"steps": 500},
+            (Claim("mujoco", most=1e-3), Claim("munk", most=0.3)),
+            guesses=(Guess(times={"mujoco": 0.1}), Guess(times={"mujoco": 1.0}), Guess()),
+        ),
         Experiment(
             "on two feet",
             RK4,
@@ -46,12 +52,14 @@ CHAINS = Lesson(
             (Claim("mujoco", 0.9, 1.1), Claim("munk", most=0.3)),
             (({"timeConstant": 0.002, "impedance": 0.9999}, Claim("mujoco", most=0.1)),),
             section="One foot and two",
+            guesses=(Guess(times={"mujoco": 1.0}), Guess(times={"mujoco": 0.1}), Guess(times={"mujoco": 1e-3})),
         ),
         Experiment(
             "on two feet",
             after=BOTH,
             claims=(Claim("mujoco", most=1e-3), Claim("munk", 0.7, 1.1)),
             section="Which setting for which accuracy",
+            guesses=(Guess(times={"munk": 0.1, "mujoco": 0.1}), Guess(times={"munk": 1e-3, "mujoco": 1.0}), Guess()),
         ),
     ),
 )

@@ -10,17 +10,16 @@ from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
-from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, Quantity
 from reports.site.live.sliders import Live, Point, Slider
 
+JOINTS_OPEN = Quantity("gap", "widest gap of a joint")
 RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)
 DENSITIES = tuple(1.0 if ratio == 1 else (1.0, ratio, 1.0) for ratio in RATIOS)
 DENSITY = Slider("density", "the coupler's density to that of the others", DENSITIES, tuple(map("{:g}".format, RATIOS)))
 HEAVY = DENSITIES[-1]
 COUPLER = FreeFourBar().coupler
-COUPLERS = Slider(
-    "coupler", "coupler [m]", (0.53, COUPLER, 0.65, 0.9), ("0.53", f"{COUPLER:.3f} (chapter)", "0.65", "0.9")
-)
+COUPLERS = Slider("coupler", "coupler [m]", (0.53, COUPLER, 0.65, 0.9), ("0.53", f"{COUPLER:.3f}", "0.65", "0.9"))
 REVOLUTION = (15, 30, 60, 120, 300, 600, 1200)
 DRIVEN = Live(
     "driven",
@@ -64,6 +63,11 @@ FOUR_BAR = Lesson(
             claims=(Claim("munk", most=0.1),),
             causes=(({"bias": None, "iterations": 100}, Claim("munk", least=10)),),
             section="Why the engine's pin is not the ideal one",
+            guesses=(
+                Guess({"iterations": 100}, claims=(Claim("munk", 0.9, 1.1),)),
+                Guess({"steps": 600}, claims=(Claim("munk", 0.1, 0.5),)),
+                Guess(),
+            ),
         ),
         Experiment(
             "let go",
@@ -71,12 +75,18 @@ FOUR_BAR = Lesson(
             {"steps": 2000},
             (Claim("mujoco", 0.8, 1.2),),
             (({"timeConstant": 0.002, "impedance": 0.9999}, Claim("mujoco", most=0.1)),),
+            guesses=(Guess(times={"mujoco": 0.1}), Guess(times={"mujoco": 1e-4}), Guess(times={"mujoco": 1.0})),
         ),
         Experiment(
             "let go",
             after=BOTH,
             claims=(Claim("munk", most=0.2), Claim("mujoco", most=0.001)),
             section="Which step for which mechanism",
+            guesses=(
+                Guess(times={"munk": 1 / 3, "mujoco": 1 / 3}),
+                Guess(times={"mujoco": 1 / 3}),
+                Guess(times={"mujoco": 1e-4}),
+            ),
         ),
         Experiment(
             "let go",
@@ -84,6 +94,7 @@ FOUR_BAR = Lesson(
             {"iterations": 1},
             (Claim("munk", least=10),),
             (({"iterations": 2}, Claim("munk", most=0.1)), ({"steps": 500}, Claim("munk", most=1.0))),
+            guesses=(Guess(times={"munk": 2.0}), Guess(times={"munk": 3000.0}), Guess(times={"munk": 1.0})),
         ),
         Experiment(
             "let go",
@@ -93,6 +104,11 @@ FOUR_BAR = Lesson(
             (({"iterations": 100}, Claim("munk", most=0.1)), ({"density": 1.0}, Claim("munk", most=0.1))),
             FORCES,
             section="Where methods fail",
+            guesses=(
+                Guess(times={"munk": 1.0}),
+                Guess({"iterations": 10, "steps": 2000}, claims=(Claim("munk", least=100),)),
+                Guess(),
+            ),
         ),
         Experiment("other assembly", overlays=CENTRE),
     ),
@@ -133,7 +149,21 @@ SLIDER_CRANK = Lesson(
     ),
     (
         Experiment("driven", overlays=CENTRE, section="In motion"),
-        Experiment("let go", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1))),
+        Experiment(
+            "let go",
+            after=BOTH,
+            claims=(
+                Claim("munk", most=0.1),
+                Claim("mujoco", most=0.1),
+                Claim("munk", 1e-4, 5e-3, "gap", is_value=True),
+            ),
+            guesses=(
+                Guess({}, {"munk": 0.01}),
+                Guess({}, claims=(Claim("munk", 1.0, is_value=True), Claim("munk", 0, 0.01, "gap", is_value=True))),
+                Guess({"iterations": 100}, claims=(Claim("munk", 0.9, 1.1),)),
+            ),
+            quantities=(JOINTS_OPEN,),
+        ),
         Experiment(
             "driven",
             {"slider_mass": 50.0, **BOTH},
@@ -142,6 +172,7 @@ SLIDER_CRANK = Lesson(
             (({"iterations": 100}, Claim("munk", most=0.1)), ({"slider_mass": 0.5}, Claim("munk", most=0.1))),
             FORCES,
             section="Where methods fail",
+            guesses=(Guess(times={"munk": 1.0}), Guess(times={"munk": 10.0}), Guess(times={"munk": 7000.0})),
         ),
     ),
 )
@@ -180,13 +211,29 @@ PENDULUM = Lesson(
         Live("ten links", TenLinks(), (75, 150, 300, 600, 1500, 3000), 75, 3, ends={"link 10": TIP}),
     ),
     (
-        Experiment("one link", after={"integrator": 1}, claims=(Claim("mujoco", most=1e-3),), overlays=FORCES),
+        Experiment(
+            "one link",
+            after={"integrator": 1},
+            claims=(Claim("mujoco", most=1e-3), Claim("mujoco", most=1e-12, of="gap", is_value=True)),
+            overlays=FORCES,
+            guesses=(
+                Guess({}, claims=(Claim("mujoco", most=1e-12, of="gap", is_value=True),)),
+                Guess(),
+                Guess({"steps": 4000}, claims=(Claim("mujoco", 0.05, 0.2),)),
+            ),
+            quantities=(JOINTS_OPEN,),
+        ),
         Experiment(
             "one link",
             after={"bias": 0.0},
             claims=(Claim("munk", most=0.1),),
             causes=(({"bias": None, "iterations": 100}, Claim("munk", least=10)),),
             section="In motion",
+            guesses=(
+                Guess({"iterations": 100}, claims=(Claim("munk", 0.9, 1.1),)),
+                Guess(),
+                Guess(times={"munk": 1.0}),
+            ),
         ),
         Experiment(
             "two links",
@@ -195,12 +242,25 @@ PENDULUM = Lesson(
             (Claim("mujoco", 5e-5, 2e-4), Claim("munk", 0.05, 0.2)),
             (({"integrator": 0}, Claim("mujoco", least=1000)),),
             section="Which step for which mechanism",
+            guesses=(
+                Guess(times={"munk": 0.1, "mujoco": 0.1}),
+                Guess(times={"munk": 1e-4, "mujoco": 1e-4}),
+                Guess(times={"munk": 0.1, "mujoco": 1e-4}),
+            ),
         ),
         Experiment(
             "ten links",
-            after={"bias": 0.0, "iterations": 1},
-            claims=(Claim("munk", least=10), Claim("mujoco", 1.0, 1.0)),
-            causes=(({"iterations": 100}, Claim("munk", most=0.1)),),
+            {"integrator": 1},
+            {"bias": 0.0, "iterations": 1},
+            (
+                Claim("munk", least=10),
+                Claim("mujoco", 1.0, 1.0),
+                Claim("mujoco", most=1e-3, is_value=True),
+                Claim("mujoco", most=1e-12, of="gap", is_value=True),
+            ),
+            (({"iterations": 100}, Claim("munk", most=0.1)), ({"integrator": 0}, Claim("mujoco", least=1000))),
+            guesses=(Guess(times={"munk": 3.0}), Guess(times={"munk": 300.0}), Guess(times={"munk": 1.0})),
+            quantities=(JOINTS_OPEN,),
         ),
         Experiment(
             "two links",
@@ -210,6 +270,11 @@ PENDULUM = Lesson(
             (({"iterations": 20}, Claim("munk", most=0.1)), ({"tip": 1.0}, Claim("munk", most=1.0))),
             FORCES,
             section="Where methods fail",
+            guesses=(
+                Guess(times={"munk": 1.0}),
+                Guess(),
+                Guess({"iterations": 2, "bias": 0.0}, claims=(Claim("munk", least=10),)),
+            ),
         ),
     ),
 )
@@ -251,9 +316,21 @@ CENTRODES = Lesson(
         Experiment(
             "rolling",
             after=BOTH,
-            claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1)),
+            claims=(
+                Claim("munk", most=0.1),
+                Claim("mujoco", most=0.1),
+                Claim("munk", 0.8, 1.25, "centre"),
+                Claim("mujoco", most=0.01, of="centre"),
+            ),
+            causes=(({"steps": 1200}, Claim("munk", 0.15, 0.25, "centre")),),
             overlays=CENTRE,
             section="The centre as a measure of an engine",
+            guesses=(
+                Guess(times={"munk": 1.0, "mujoco": 1.0}, of="centre"),
+                Guess(times={"munk": 0.01, "mujoco": 0.01}, of="centre"),
+                Guess(),
+            ),
+            quantities=(Quantity("centre", "median distance of the centres", ("coupler",)),),
         ),
     ),
 )

@@ -9,7 +9,7 @@ from engines.pymunk.joints.roll import ContactSettings
 from engines.pymunk.methods import ROLL_FACETED
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
-from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, Quantity
 from reports.site.lessons.linkages import CENTRODES
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
@@ -61,14 +61,22 @@ ROLLING = Lesson(
             claims=(Claim("munk", 0.7, 1.3), Claim("mujoco", 0.7, 2.0)),
             causes=(({"munk": MANY}, Claim("munk", most=0.25)),),
             section="Errors that no smaller step removes",
+            guesses=tuple(Guess(times={"munk": times, "mujoco": times}) for times in (0.1, 1.0, 1e-3)),
         ),
-        Experiment("a disc", after={"steps": 2000}, claims=(Claim("munk", 0.05, 0.15),), section="Roulettes"),
+        Experiment(
+            "a disc",
+            after={"steps": 2000},
+            claims=(Claim("munk", 0.05, 0.15),),
+            section="Roulettes",
+            guesses=tuple(Guess(times={"munk": times}) for times in (1.0, 0.1, 10.0)),
+        ),
         Experiment(
             "an ellipse",
             {"munk": MANY, "steps": 2000},
             {"munk": FEW},
             (Claim("munk", least=10),),
             section="Where methods fail",
+            guesses=tuple(Guess(times={"munk": times}) for times in (1.0, 2.0, 11.0)),
         ),
     ),
 )
@@ -90,12 +98,42 @@ GEARS = Lesson(
         ),
     ),
     (
-        Experiment("two gears", after={"eccentricity": 0.7}, overlays=FORCES, section="Elliptic gears"),
         Experiment(
-            "two gears", after=BOTH, claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)), overlays=FORCES
+            "two gears",
+            after={"eccentricity": 0.7},
+            claims=(
+                Claim("exact", 1.3, 3.0, "rates"),
+                Claim("exact", most=1e-5, of="contact", is_value=True),
+                Claim("munk", most=1.0),
+            ),
+            overlays=FORCES,
+            section="Elliptic gears",
+            guesses=(Guess(times={"exact": 0.0}, of="rates"), Guess(), Guess()),
+            quantities=(
+                Quantity("rates", "the second gear turns at", ("second",)),
+                Quantity("contact", "the sum of the distances changes by"),
+            ),
         ),
         Experiment(
-            "two gears", BOTH, {"munk": FEW}, (Claim("munk", least=10),), overlays=FORCES, section="The contact"
+            "two gears",
+            after=BOTH,
+            claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)),
+            overlays=FORCES,
+            guesses=(
+                Guess(),
+                Guess(times={"munk": 1.0, "mujoco": 1.0}),
+                Guess(times={"munk": 1.0}),
+            ),
+        ),
+        Experiment(
+            "two gears",
+            BOTH,
+            {"munk": FEW},
+            (Claim("munk", least=10), Claim("munk", least=0.1, of="rates", is_value=True)),
+            overlays=FORCES,
+            section="The contact",
+            guesses=(Guess(times={"munk": 0.0}, of="rates"), Guess(), Guess(times={"munk": 1.0})),
+            quantities=(Quantity("rates", "the second gear turns at", ("second",)),),
         ),
     ),
 )
@@ -109,6 +147,13 @@ CAM = Lesson(
         Experiment("rolling", overlays=CENTRE, section="The coupler of the four-bar"),
         Experiment("rolling", overlays=CENTRE),
         Experiment("rolling", overlays=CENTRE, widget="cam"),
-        Experiment("a cam", {"munk": MANY, "steps": 2000}, {"munk": FEW}, (Claim("munk", least=10),), overlays=CENTRE),
+        Experiment(
+            "a cam",
+            {"munk": MANY, "steps": 2000},
+            {"munk": FEW},
+            (Claim("munk", least=10),),
+            overlays=CENTRE,
+            guesses=(Guess(times={"munk": 1.0}), Guess(times={"munk": 2.0}), Guess()),
+        ),
     ),
 )

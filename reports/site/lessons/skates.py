@@ -6,7 +6,7 @@ from engines import pymunk
 from engines.pymunk.methods import SKATE_CENTRE, SKATE_PROJECTED
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.wheels.vehicles import CarAndTrailer
-from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Lesson
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, Quantity
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
 NAIVE, PROJECTED = "naive: the centre's sideways velocity set to zero", "our code: an impulse at the blade"
@@ -39,13 +39,23 @@ SKATE = Lesson(
     ),
     (
         Experiment("the sleigh", BOTH, overlays=FORCES + CENTRE, section="Degrees of freedom"),
-        Experiment("the sleigh", after={"steps": 3000}, claims=(Claim("mujoco", 1.5, 2.5),)),
+        Experiment(
+            "the sleigh",
+            after={"steps": 3000},
+            claims=(Claim("mujoco", 1.5, 2.5),),
+            guesses=(Guess(times={"mujoco": 0.1}), Guess(times={"mujoco": 0.01}), Guess(times={"mujoco": 2.0})),
+        ),
         Experiment(
             "the sleigh",
             BOTH,
             {"munk": NAIVE},
             (Claim("munk", least=100),),
             (({"steps": 3000}, Claim("munk", 0.9, 1.1)), ({"munk": PROJECTED}, Claim("munk", most=0.01))),
+            guesses=(
+                Guess(times={"munk": 1.0}),
+                Guess({"munk": NAIVE, "steps": 3000}, claims=(Claim("munk", least=100),)),
+                Guess(),
+            ),
             section="Where methods fail",
         ),
         Experiment(
@@ -53,6 +63,7 @@ SKATE = Lesson(
             BOTH,
             {"steps": 3000},
             (Claim("munk", 0.05, 0.2),),
+            guesses=(Guess(times={"munk": 1.0}), Guess(times={"munk": 0.1}), Guess(times={"munk": 0.01})),
             section="How do I put an ideal skate into pymunk?",
         ),
         Experiment("the sleigh", BOTH, overlays=FORCES, section="The only one, and no factor of 2"),
@@ -68,7 +79,17 @@ PARKING = Lesson(
         Experiment("the sleigh", BOTH, section="Degrees of freedom"),
         Experiment("the sleigh", BOTH, section="The only one, and no factor of 2"),
         Experiment("the sleigh", BOTH, widget="parking"),
-        Experiment("the sleigh", BOTH, {"munk": NAIVE}, (Claim("munk", least=100),)),
+        Experiment(
+            "the sleigh",
+            BOTH,
+            {"munk": NAIVE},
+            (Claim("munk", least=100),),
+            guesses=(
+                Guess(times={"munk": 1.0}),
+                Guess({"munk": NAIVE, "steps": 3000}, claims=(Claim("munk", least=100),)),
+                Guess(),
+            ),
+        ),
     ),
 )
 
@@ -108,15 +129,32 @@ WHEELS = Lesson(
     ),
     (
         Experiment("forwards", BOTH, overlays=FORCES + CENTRE, section="How a vehicle can still move"),
-        Experiment("forwards", after={"steps": 5000}, claims=(Claim("mujoco", 0.5, 1.5),)),
+        Experiment(
+            "forwards",
+            after={"steps": 5000},
+            claims=(Claim("mujoco", 1.0, 2.0),),
+            guesses=(Guess(times={"mujoco": 0.1}), Guess(times={"mujoco": 1.4}), Guess(times={"mujoco": 1e-4})),
+        ),
         Experiment(
             "forwards",
             BOTH,
             {"munk": NAIVE},
             (Claim("munk", least=10),),
             (({"steps": 5000}, Claim("munk", 0.8, 1.3)), ({"munk": PROJECTED}, Claim("munk", most=0.1))),
+            guesses=(
+                Guess(times={"munk": 1.0}),
+                Guess(),
+                Guess({"munk": NAIVE, "steering": 0.2}, claims=(Claim("munk", least=100),)),
+            ),
             section="Where methods fail",
         ),
-        Experiment("backwards", {**BOTH, "bend": 0.0125}, {"bend": 0.05}),
+        Experiment(
+            "backwards",
+            {**BOTH, "bend": 0.05},
+            {"bend": 0.2},
+            (Claim("exact", 0.52, 0.57, "bend"), Claim("munk", 0.52, 0.57, "bend")),
+            guesses=tuple(Guess(times=dict.fromkeys(("exact", "munk"), by), of="bend") for by in (0.25, 0.55, 1.0)),
+            quantities=(Quantity("bend", "the bend is 1 rad after", PARTS),),
+        ),
     ),
 )

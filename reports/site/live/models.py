@@ -11,7 +11,7 @@ from typing import Any
 import pymunk as pymunk_package
 from pymunk.constraints import GrooveJoint, PivotJoint
 
-from engines import Unsupported
+from engines import Engine, Unsupported
 from engines.mujoco import MuJoCo
 from engines.mujoco.model import MuJoCoModel
 from engines.mujoco.writers import mjcf
@@ -21,7 +21,7 @@ from engines.pymunk.model import Model
 from reference.joints import Pin, Skate, Slot
 from reference.mechanism import Mechanism
 from reports.site.drawn import index_of
-from reports.site.live.sliders import ENGINES
+from reports.site.live.sliders import ENGINES, INTEGRATORS
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,30 @@ def mujoco_text(engine: MuJoCo, mechanism: Mechanism, step: float) -> MujocoText
         links(model),
         () if springs else tuple(name for name in ENGINES["mujoco"] if name != "integrator"),
     )
+
+
+def own_values(
+    munk: Engine | str, muj: Engine | str, mechanism: Mechanism, step: float, duration: float
+) -> dict[str, str]:
+    """Return the values of the engines' settings that the methods themselves choose, as texts of the controls."""
+    texts: dict[str, str] = {}
+    if isinstance(munk, Pymunk):
+        numbers = space_of(munk, mechanism, duration).numbers
+        texts |= {"iterations": f"{numbers[5]:.0f}", "bias": f"{numbers[6]:.2g}"}
+    if isinstance(muj, MuJoCo):
+        model = muj.model(mechanism, step, unit=1.0).compiled
+        options = model.opt
+        texts |= {
+            "integrator": dict(INTEGRATORS)[options.integrator],
+            "solverIterations": str(options.iterations),
+            "tolerance": f"{options.tolerance:g}",
+        }
+        kind = "eq" if model.neq else "pair"
+        if model.neq + model.npair:
+            constant, impedance = getattr(model, f"{kind}_solref")[0][0], getattr(model, f"{kind}_solimp")[0][0]
+            texts["timeConstant"] = f"{1000 * constant:.2g} ms" if constant > 0 else "given by a stiffness"
+            texts["impedance"] = f"{impedance:.4g}"
+    return texts
 
 
 def links(model: MuJoCoModel) -> tuple[tuple[float, ...], ...]:

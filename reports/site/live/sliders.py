@@ -145,6 +145,12 @@ class Live(Look):
             **CONTROLS,
         }
 
+    def words(self) -> dict[str, str]:
+        """Return the name of each control for the reader."""
+        engines = {f"{name}": f"joints in {word}" for name, word in NAMES.items()}
+        own = {key: words for name in ENGINES for key, (words, _) in ENGINES[name].items()}
+        return {"steps": "step", **engines, **own, **{slider.field: slider.label for slider in self.sliders}}
+
     def located(self, given: Mapping[str, Any]) -> dict[str, int]:
         """Return the index of each control's value. Raises KeyError for an unknown control, ValueError for an unknown
         value."""

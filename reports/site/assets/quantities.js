@@ -1,0 +1,59 @@
+// @ts-check
+/** Numbers of a motion that a lesson shows beside its errors; reports/site/lesson.py describes them. */
+
+import { ends, instantCentre, poseAt, told } from "./motion.js";
+
+/** @typedef {{kind: "gap"|"rates"|"bend"|"centre"|"contact", words: string, bodies: number[]}} Quantity
+ * @typedef {{pose: ArrayLike<number>, twist: ArrayLike<number>}} States
+ * @typedef {{t: ArrayLike<number>, bodies: number, window: number[], joints: import("./motion.js").Joint[],
+ *   forces: import("./motion.js").Force[]|null, exact: States}} Run
+ * @typedef {number[]|null} Found one number, or the least and the largest one */
+
+/** Return a quantity of one motion; null for a motion without it. @param {Quantity} quantity @param {Run} run @param {States} states @returns {Found} */
+export function measured({ kind, bodies }, run, states) {
+  const { t, bodies: count, exact, window: [first, last] } = run;
+  const frames = Array.from({ length: last - first + 1 }, (_, index) => first + index);
+  const angle = (/** @type {number} */ body, /** @type {number} */ frame) => poseAt(states.pose, count, frame, body)[2];
+  const rate = (/** @type {number} */ frame) => Math.abs(poseAt(states.twist, count, frame, bodies[0])[2]);
+  switch (kind) {
+    case "gap": {
+      const gaps = run.joints.flatMap((joint) => frames.map((frame) => {
+        const [[ax, ay], [bx, by]] = ends(joint, states.pose, count, frame);
+        return Math.hypot(bx - ax, by - ay);
+      }));
+      return states === exact ? null : [gaps.reduce((a, b) => Math.max(a, b), 0)];
+    }
+    case "rates":
+      return [frames.reduce((a, frame) => Math.min(a, rate(frame)), Infinity), frames.reduce((a, frame) => Math.max(a, rate(frame)), 0)];
+    case "bend": {
+      const bend = (/** @type {number} */ frame) => Math.abs(angle(bodies[1], frame) - angle(bodies[0], frame));
+      const after = frames.find((frame) => frame > first && bend(frame) >= 1);
+      if (after === undefined) return null;
+      const [low, high] = [bend(after - 1), bend(after)];
+      return [t[after - 1] + ((1 - low) / (high - low)) * (t[after] - t[after - 1])];
+    }
+    case "centre": {
+      const centre = (/** @type {States} */ { pose, twist }, /** @type {number} */ frame) => instantCentre(poseAt(pose, count, frame, bodies[0]), poseAt(twist, count, frame, bodies[0]));
+      const apart = frames.flatMap((frame) => {
+        const [own, right] = [centre(states, frame), centre(exact, frame)];
+        return own && right ? [Math.hypot(own[0] - right[0], own[1] - right[1])] : [];
+      }).sort((a, b) => a - b);
+      return states === exact ? null : [apart[Math.floor(apart.length / 2)]];
+    }
+    case "contact": {
+      const at = run.forces?.find(({ contact }) => contact)?.at;
+      if (states !== exact || !at) return null;
+      const pins = run.joints.filter(({ first: body, line }) => body < 0 && line === null).map(({ firstPoint }) => firstPoint);
+      const sums = frames.map((frame) => pins.reduce((sum, [x, y]) => sum + Math.hypot((at[2 * frame] ?? NaN) - x, (at[2 * frame + 1] ?? NaN) - y), 0));
+      return [Math.max(...sums) - Math.min(...sums)];
+    }
+  }
+}
+
+const UNITS = { gap: "m", rates: "rad/s", bend: "s", centre: "m", contact: "m" };
+
+/** Return a quantity as text. @param {Quantity["kind"]} kind @param {Found|undefined} found */
+export function worded(kind, found) {
+  if (!found) return kind === "bend" ? "never" : "–";
+  return `${found.map(told).join(" to ")} ${UNITS[kind]}`;
+}
