@@ -222,7 +222,9 @@ def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[
                 "scene": lesson.scenes.index(live),
                 "before": start,
                 "after": live.located(experiment.after),
-                "shown": " ".join(("paths", *experiment.overlays)),
+                "shown": " ".join(
+                    ("paths", *experiment.overlays, *(() if "centre" in experiment.overlays else ("enlarged",)))
+                ),
                 "quantities": [quantity_data(live, each) for each in experiment.quantities],
                 "more": None if body is None else {"heading": experiment.section, "body": Markup(body)},
                 "widget": experiment.widget,

@@ -134,9 +134,9 @@ def test_the_runs_contradict_every_wrong_answer_and_agree_with_the_right_one(run
             assert_claim(claim, start, run)
         claims = [Claim(engine, of=guess.of) for engine in guess.times]
         measured = [number_of(run, claim) / number_of(start, claim) for claim in claims]
-        agrees = [
-            expected / 3 < value < 3 * expected for expected, value in zip(guess.times.values(), measured, strict=True)
-        ]
+        close = 1.5 if guess.of else 3.0  # errors vary more than other quantities
+        pairs = zip(guess.times.values(), measured, strict=True)
+        agrees = [expected / close < value < close * expected for expected, value in pairs]
         if guess.times:
             assert all(agrees) == is_right, (words, measured)
 
@@ -341,6 +341,42 @@ def test_every_page_loads_without_errors_and_fits_a_phone(files, opened, stride)
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert wide <= 0, f"{name} is wider than a phone by {wide} px"
         page.context.close()
+
+
+SMALL = """() => [...document.querySelectorAll('#lesson :is(button, select, input, summary, .drag)')]
+  .flatMap((each) => {
+  const target = each.matches('[type=checkbox]') ? each.closest('label') : each;
+  const { height, width } = target.getBoundingClientRect();
+  return width && height < 24 ? [`${target.outerHTML.slice(0, 80)}: ${height}`] : [];
+})"""
+UNNAMED = """() => [...document.querySelectorAll('#lesson .drag')].filter((each) => !['aria-label', 'aria-valuemin',
+  'aria-valuenow', 'aria-valuetext'].every((name) => each.getAttribute(name)) ||
+  each.getAttribute('aria-label') === each.dataset.name).map((each) => each.outerHTML)"""
+
+
+@pytest.mark.parametrize("lesson", [marked(lesson.name) for lesson in LESSONS])
+def test_controls_are_large_enough_for_fingers_and_the_picture_leaves_room_for_the_text(opened, lesson):
+    page = opened(f"lessons/{lesson}.html", viewport=PHONE, reduced_motion="reduce")
+    page.wait_for_selector("#lesson.ready")
+    page.evaluate("document.querySelectorAll('#lesson details').forEach((each) => { each.open = true; })")
+    assert page.evaluate(SMALL) == []
+    assert page.evaluate(UNNAMED) == []
+    assert page.locator(".stage-column").bounding_box()["height"] <= 0.4 * PHONE["height"]
+
+
+def test_the_first_picture_enlarges_differences_that_are_too_small_to_be_seen(opened):
+    page = opened("lessons/four_bar.html", viewport=PHONE, reduced_motion="reduce")
+    page.wait_for_selector("#lesson.ready")
+    lens = page.locator(".lens > svg").bounding_box()
+    assert lens["y"] + lens["height"] < 0.4 * PHONE["height"]  # the magnifier is in the window
+    assert "drawn 5 times as large" in page.inner_text(".remark >> nth=0")
+    rocker = page.locator(".motion.method-1 .body").nth(2)
+    angles = "element => element.getAttribute('transform').match(/rotate\\((.*)\\)/)[1] * Math.PI / 180"
+    exact = page.locator(".motion.truth .body").nth(2).evaluate(angles)
+    enlarged = rocker.evaluate(angles) - exact
+    page.locator("input[value=enlarged]").uncheck()
+    assert enlarged == pytest.approx(5 * (rocker.evaluate(angles) - exact), rel=1e-6)
+    assert abs(enlarged) > 0.05
 
 
 def test_the_keyboard_plays_a_motion_moves_the_time_and_switches_overlays(opened):

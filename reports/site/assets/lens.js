@@ -23,6 +23,7 @@ export class Lens {
     /** @type {{name: string, unit: string, at: (motion: number, frame: number) => number[]}[]} */
     this.joints = [];
     this.factor = 1;
+    this.enlarged = 1; // factor of the differences in the main picture
     this.frame = 0;
     this.choice.addEventListener("change", () => this.scale());
   }
@@ -96,7 +97,7 @@ export class Lens {
       parts.push(svg("text", { x: 10, y: SIZE - 18 }, `${told(bar)} ${joint.unit}`));
     }
     this.picture.replaceChildren(...parts);
-    const enlarged = this.drawn ? factor / this.drawn : 0;
+    const enlarged = this.drawn ? factor / this.drawn / this.enlarged : 0;
     const times = joint.unit === "m" && factor && enlarged ? `, ${Number(enlarged.toPrecision(1)).toLocaleString("en")} times as large as above` : "";
     this.words.textContent = `${joint.unit === "m" ? "Open" : "Slips"} by: ${remarks.join(", ")}${times}.`;
   }

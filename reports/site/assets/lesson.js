@@ -1,10 +1,9 @@
 // @ts-check
 /** A lesson: a picture for all experiments, questions, numbers that can be dragged, and a worker for the engines. */
 
-import { svg } from "./chart.js";
 import { dragged } from "./exact.js";
 import { Form } from "./form.js";
-import { placed, told, UNITS } from "./motion.js";
+import { told, UNITS } from "./motion.js";
 import { Player } from "./player.js";
 import { worded } from "./quantities.js";
 
@@ -112,26 +111,12 @@ function stage({ drawing, motions }) {
   );
 }
 
-/** Return the path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
-function pathOf(pose, bodies, body, point) {
-  let path = "";
-  for (let at = 3 * body; at < pose.length; at += 3 * bodies) {
-    const [x, y] = placed([pose[at], pose[at + 1], pose[at + 2]], point);
-    if (Number.isFinite(x + y)) path += `${path ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}`;
-  }
-  return path;
-}
-
 /** @param {Answer} answer @param {boolean} play @param {Record<string, string>} ways */
 function show(answer, play, ways) {
   shown = answer;
-  const { motions, exact, bodies, traces, lost } = answer;
+  const { motions, exact, lost } = answer;
   player.stop();
   player.stage.outerHTML = stage(answer);
-  figure.querySelectorAll(".frame .traces").forEach((group, index) => {
-    const pose = motions[index]?.pose ?? exact.pose;
-    for (const { body, point } of traces) group.append(svg("path", { class: "trace", d: pathOf(pose, bodies.length, body, point) }));
-  });
   const spring = motions.find((/** @type {any} */ { name }) => name === "mujoco")?.spring;
   find(".springs").textContent = springWords(spring, answer);
   player.load({

@@ -1,7 +1,7 @@
 // @ts-check
 /** An animated picture with overlays, whose mechanism the reader can drag. */
 
-import { errorChart } from "./chart.js";
+import { errorChart, svg } from "./chart.js";
 import { Lens } from "./lens.js";
 import { UNITS, errors, placed, poseAt, seen, told } from "./motion.js";
 import { OVERLAYS } from "./overlays.js";
@@ -10,10 +10,22 @@ import { OVERLAYS } from "./overlays.js";
 
 const SHORTEST = 5; // shortest duration of a playback [s]; shorter motions are shown in slow motion
 const GROWING = 3; // factor of slow motion at the fastest growth of the visible difference
+const FACTORS = [1000, 500, 200, 100, 50, 20, 10, 5, 2]; // of enlarged differences
+const VISIBLE = 0.15; // size of the largest enlarged difference, relative to the mechanism
 const SLOWER = [1, 2, 5, 10, 20, 50, 100];
 
 /** @param {Element} element @param {number} x @param {number} y @param {number} angle [rad] */
 const put = (element, x, y, angle) => element.setAttribute("transform", `translate(${x} ${y}) rotate(${(angle * 180) / Math.PI})`);
+
+/** Return the path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
+function pathOf(pose, bodies, body, point) {
+  let path = "";
+  for (let at = 3 * body; at < pose.length; at += 3 * bodies) {
+    const [x, y] = placed([pose[at], pose[at + 1], pose[at + 2]], point);
+    if (Number.isFinite(x + y)) path += `${path ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}`;
+  }
+  return path;
+}
 
 export class Player {
   /** @param {HTMLElement} figure */
@@ -39,7 +51,10 @@ export class Player {
     this.schedule = [];
     /** @type {(time: number) => void} */
     this.mark = () => {};
-    for (const box of this.boxes) box.addEventListener("change", () => this.show());
+    this.enlarged = 1; // factor of the drawn differences from the exact motion
+    /** @type {ArrayLike<number>[]} the drawn poses of each motion, and the exact ones */
+    this.drawn = [];
+    for (const box of this.boxes) box.addEventListener("change", () => this.draw());
     this.time.addEventListener("input", () => {
       this.stop();
       this.frame = Number(this.time.value);
@@ -59,6 +74,7 @@ export class Player {
     [this.time.min, this.time.max] = take.window.map(String);
     this.frame = Math.min(Math.max(this.frame, take.window[0]), take.window[1]);
     for (const box of this.boxes) {
+      if (box.value === "enlarged") continue;
       const there = box.value === "paths" ? take.traces.length > 0 : OVERLAYS[box.value].there(take);
       box.disabled = !there;
       const row = box.closest("label");
@@ -66,6 +82,21 @@ export class Player {
     }
     this.lens.load(take);
     this.measure(take);
+    this.draw();
+  }
+
+  /** Compute the drawn poses, with enlarged differences where the reader wants them; draw the paths and the shown instant. */
+  draw() {
+    const { take } = this;
+    if (!take) return;
+    const factor = this.on("enlarged") ? this.enlarged : 1;
+    const exact = take.truth.pose;
+    const pose = (/** @type {ArrayLike<number>} */ own) => (factor === 1 ? own : Float64Array.from(own, (value, k) => exact[k] + factor * (value - exact[k])));
+    this.drawn = [...take.motions.map((motion) => pose(motion.pose)), exact];
+    this.lens.enlarged = factor;
+    this.stage.querySelectorAll(".traces").forEach((group, index) => group.replaceChildren(
+      ...take.traces.map(({ body, point }) => svg("path", { class: "trace", d: pathOf(this.drawn[index], take.bodies.length, body, point) })),
+    ));
     this.show();
   }
 
@@ -81,6 +112,14 @@ export class Player {
     const apart = new Float64Array(frames);
     for (const { pose } of take.motions) {
       seen(truth.pose, pose, bodies, frames, take.size).forEach((value, frame) => (apart[frame] = Math.max(apart[frame], Number.isFinite(value) ? value : 0)));
+    }
+    const largest = apart.reduce((a, b) => Math.max(a, b), 0);
+    this.enlarged = largest > 0 ? (FACTORS.find((by) => by * largest <= VISIBLE * take.size) ?? 1) : 1;
+    for (const box of this.boxes.filter(({ value }) => value === "enlarged")) {
+      box.disabled = this.enlarged === 1;
+      const label = /** @type {HTMLElement} */ (box.closest("label"));
+      label.hidden = box.disabled;
+      /** @type {HTMLElement} */ (label.querySelector("span")).textContent = String(this.enlarged);
     }
     const far = apart.map((value) => Math.min(value, take.size));
     this.stopAt = last;
@@ -136,10 +175,9 @@ export class Player {
   show() {
     const { take, frame } = this;
     if (!take) return;
-    const motions = [...take.motions.map((motion) => motion.pose), take.truth.pose];
     this.groups.forEach((group, index) => {
       group.forEach((element, body) => {
-        const [x, y, angle] = poseAt(motions[index], take.bodies.length, frame, body);
+        const [x, y, angle] = poseAt(this.drawn[index], take.bodies.length, frame, body);
         const there = Number.isFinite(x + y + angle);
         element.setAttribute("visibility", there ? "visible" : "hidden");
         if (there) put(element, x, y, angle);
@@ -155,6 +193,7 @@ export class Player {
     const width = this.stage.viewBox.baseVal.width;
     const remarks = Object.entries(OVERLAYS).map(([name, { draw }]) => (this.on(name) ? draw({ take, frame, overlay, width }) : ""));
     this.lens.show(frame);
+    if (this.on("enlarged")) remarks.unshift(`The engines' differences from the exact motion are drawn ${this.enlarged} times as large.`);
     this.remark.textContent = remarks.filter(Boolean).join(" ");
   }
 
