@@ -249,7 +249,7 @@ class ReferenceTrial:
 
 
 def refused(references: Sequence[Reference], motion: bool = False) -> dict[Reference, str]:
-    """Reference that can't be used -> the reason. Raises WorkersLost.
+    """Reference that can't be used -> the reason why. Raises WorkersLost.
 
     A worker loads the references first, since code of a third party may end the process.
     """

@@ -26,8 +26,8 @@ from reports.model.page import Page
 from reports.model.quantities import QUANTITY
 from reports.model.tasks import Answer, Task, Values
 
-# The kind of a regularisation consists of a mask of the regularised rows, and of a flag whether the velocity term of
-# their acceleration is complete. The judge makes one run for each kind.
+# The kind of a regularisation is (mask of the regularised rows, whether the velocity term of these rows is complete).
+# The judge makes one run for each kind.
 SoftKind = tuple[tuple[bool, ...], bool]
 
 # The judge's runs have MuJoCo's default regularisation with a smaller compliance. Errors are proportional to the

@@ -60,7 +60,7 @@ def order(promise: ConvergenceOrder | NotDeclared, rows: Sequence[Measurement]) 
 
 # Safety factor on the judge's error of the same order. Methods of one order have different error constants. For
 # example, the constant of a spring that closes a gap in five steps is 5^2 / 2 at order 2. The errors of correct methods
-# in the grid are at most 10 times the judge's error, and mostly at most twice.
+# in the grid are at most 10 times the judge's error.
 ROOM = 20.0
 # Safety factor on the error that is predicted from a method's coarser steps. The factor allows for the next power of
 # the step, and for a largest error at another sample. With a factor below 10^0.5, an error that is equal at the two
@@ -229,7 +229,7 @@ class Case:
 
     @property
     def ours(self) -> bool:
-        """Whether scene and engine belong to this suite. Only such rows are published."""
+        """Whether scene and engine belong to this suite, since only rows of this suite are published."""
         return {type(each).__module__.partition(".")[0] for each in (self.scene, self.engine)} <= {
             "reference",
             "engines",

@@ -20,7 +20,7 @@ from reports.model.quantities import QUANTITIES, Quantity
 ROOM_SOFT = 2.0  # Safety factor on the error of the declared softness, which depends on an estimated inertia.
 FLAT = 0.35  # A smaller slope is no convergence, since half a decade of steps reduces the error by less than 1.5.
 ENOUGH_POINTS = 3  # Fewest points for an order. Two points determine a slope but do not verify it.
-ROUNDING_GROWTH = 100.0  # Rounding errors may grow by this factor at finer steps, which need more steps.
+ROUNDING_GROWTH = 100.0  # Rounding errors may grow by this factor at finer steps, since a run then has more steps.
 NEAR_PLATEAU = 3.0  # An error within this factor of the plateau is not used for the order.
 POWERS = (0.5, 8.0)  # Smallest and largest power of the step with which an error may approach its limit.
 

@@ -145,7 +145,7 @@ def out_of_time(limit: float, wall: float | None = None) -> Loss:
 
 
 def second_crash(code: int | None, words: str, earlier: str) -> Loss:
-    """The result of a cell whose process ended twice. code, words: exit code and description of the second end."""
+    """The result of a cell whose process ended twice. code, words: exit code and description of the second process."""
     if from_outside(code):
         return Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {earlier}")
     return Loss(Outcome.ABORTED, words)

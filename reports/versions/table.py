@@ -106,7 +106,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
         wrong = sum(not miss <= WRONG_TREE for miss in misses)
         error = max((math.inf if math.isnan(miss) else float(miss) for miss in misses), default=math.nan)
         sentence = f"{wrong} of {len(misses)} by more than {WRONG_TREE:g}"
-    elif "Error: " in answer.sentence:  # The version lacks a name.
+    elif "Error: " in answer.sentence:  # A name does not exist in the version.
         outcome = Outcome.UNSUPPORTED
     scene = f"random trees ({trees.bodies} bodies, {trees.loops} loops)"
     method = (scene, trees.method.variant, math.nan, ACCELERATION)

@@ -52,7 +52,7 @@ def assert_equal(mechanism: Mechanism, other: Mechanism, driven: tuple[str, ...]
     """Assert that accelerations, total joint forces on every body, and degrees of freedom are equal.
 
     driven: bodies with a prescribed motion. An engine does not store the mass and centre of mass of these bodies, so
-    only their rotations are compared, and the forces on other bodies.
+    only their rotations are compared.
     """
     is_free = np.array([body.name not in driven for body in mechanism.bodies])
     order = [other.body_index(body.name) for body in mechanism.bodies]
