@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from html import escape
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,7 @@ from reports.site.live.data import data, first_picture
 from reports.site.live.models import own_values
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED, Live
 from reports.site.markdown import cards, render_html, render_lecture, section, title
-from reports.site.munk2d import COMPILED
+from reports.site.munk2d import COMPILED, compiled_from
 from reports.site.packages import D3, MUJOCO, PACKAGES, PLOT, NotFetched, Package, fetch_package
 from reports.write.columns import COLUMN_OF_VARIANT
 from reports.write.csv_files import read_lines
@@ -85,6 +86,9 @@ def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
     files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
     files[ENGINE_FILES["munk2d"]] = COMPILED.read_bytes()
+    release, _ = compiled_from(COMPILED.read_text(encoding="utf-8"))
+    if release != version("pymunk"):
+        source.troubles.append(f"The page runs pymunk {release}, and Python has pymunk {version('pymunk')}.")
     for package in PACKAGES:
         try:
             files |= fetch_package(package, source.cache)

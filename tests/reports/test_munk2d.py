@@ -72,6 +72,7 @@ def test_the_compiled_munk2d_computes_the_motions_of_python(name, tmp_path):
     for page, (_, engine) in zip(json.loads(ended.stdout), live.munk, strict=True):
         if page is None:
             continue
+        assert not isinstance(engine, str)
         samples = live.samples(steps)
         python = engine.build(live.scene.mechanism(), live.scene.duration / steps)(samples, steps // samples).pose
         pose = np.reshape(np.array(page, dtype=float), python.shape)
