@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
-import shutil
-import subprocess
 from xml.etree import ElementTree
 
 import numpy as np
@@ -18,7 +15,7 @@ from reference.chapter.skates import commutator_displacement, sidestep
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.site.lesson import exercise_of
 from reports.site.lessons import LESSONS
-from reports.site.munk2d import SHIM
+from tests.reports.page_scripts import run_in_node
 
 NODE = """
 import { MOTIONS, asDxf, asSvg, crosses, seriesOf, shapesOf } from "./cam.js";
@@ -35,16 +32,7 @@ EXERCISES = {exercise.answer: exercise for lesson in LESSONS for exercise in les
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    if shutil.which("node") is None:
-        pytest.skip("no Node.js is installed")
-    folder = tmp_path_factory.mktemp("exercises")
-    for path in (SHIM.parent / "assets").glob("*.js"):
-        shutil.copy(path, folder)
-    (folder / "package.json").write_text('{"type": "module"}')
-    (folder / "run.js").write_text(NODE)
-    ended = subprocess.run(["node", "run.js"], cwd=folder, capture_output=True, encoding="utf-8", check=False)
-    assert ended.returncode == 0, ended.stderr
-    return json.loads(ended.stdout)
+    return run_in_node(tmp_path_factory.mktemp("exercises"), NODE)
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,6 @@ pymunk."""
 from __future__ import annotations
 
 import gzip
-import json
-import shutil
-import subprocess
 from importlib.metadata import version
 
 import numpy as np
@@ -15,6 +12,7 @@ import pytest
 from reports.site.lessons import LESSONS
 from reports.site.live.data import data
 from reports.site.munk2d import COMPILED, SHIM, compiled_from, source_digest
+from tests.reports.page_scripts import run_in_node
 
 COMPILED_RELEASE, COMPILED_DIGEST = compiled_from(COMPILED.read_text("utf-8"))
 LIVES = {f"{lesson.name}, {live.word}": live for lesson in LESSONS for live in lesson.scenes}
@@ -48,28 +46,15 @@ def test_the_compiled_munk2d_is_from_the_present_sources_and_small():
     assert compiled_from("no header") == ("", "")
 
 
-@pytest.mark.skipif(shutil.which("node") is None, reason="no Node.js is installed")
 @pytest.mark.skipif(version("pymunk") != COMPILED_RELEASE, reason="another release of pymunk is installed")
 @pytest.mark.parametrize("name", LIVES)
 def test_the_compiled_munk2d_computes_the_motions_of_python(name, tmp_path):
     live = LIVES[name]
-    for path in (COMPILED, *(SHIM.parent / "assets").glob("*.js")):
-        shutil.copy(path, tmp_path)
-    (tmp_path / "package.json").write_text('{"type": "module"}')
     scenes, steps = list(live.places()), live.steps[live.start]
     script = NODE.replace("START", str(scenes.index(live.scene))).replace("STEPS", str(steps))
-    (tmp_path / "run.js").write_text(script)
-    ended = subprocess.run(
-        ["node", "run.js"],
-        input=json.dumps(data(live, {})),
-        cwd=tmp_path,
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-    )
-    assert ended.returncode == 0, ended.stderr
+    pages = run_in_node(tmp_path, script, data(live, {}))
     compared = 0
-    for page, (_, engine) in zip(json.loads(ended.stdout), live.munk, strict=True):
+    for page, (_, engine) in zip(pages, live.munk, strict=True):
         if page is None:
             continue
         assert not isinstance(engine, str)
