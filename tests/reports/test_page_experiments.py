@@ -25,7 +25,7 @@ from reports.model.cells import Cell
 from reports.model.measure import Measurement, measure, stopped_where_it_ends
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material
-from reports.model.tasks import Answer, Motion, trajectory_of
+from reports.model.tasks import Answer, Motion, Task, trajectory_of
 from reports.pages import claims, common
 from reports.pages.at_a_glance import glance_table, sentences
 from reports.pages.centrodes import page as centrodes
@@ -287,7 +287,7 @@ def test_a_release_that_lacks_a_function_of_the_adapter_is_too_old(monkeypatch):
 
 
 def test_the_table_at_a_glance_has_a_row_and_a_sentence_for_each_engine_and_an_empty_table_without_answers():
-    answers = {
+    answers: dict[Task, Answer] = {
         task: Answer(
             Outcome.FINISHED, values={**dict.fromkeys(ELEMENT_EXAMPLES, "yes"), "reactions": "yes", "width": "64"}
         )

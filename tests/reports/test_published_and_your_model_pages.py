@@ -22,7 +22,7 @@ from reports.pages.published.experiments import (
     PUBLISHED,
     Acrobot,
     DirectRK4,
-    Newton,
+    NewtonBounds,
     freudenstein,
     rk4_drift,
 )
@@ -37,7 +37,7 @@ from tests.reports.models_of_others import models, spaces, unpacked
 @pytest.fixture(scope="module")
 def answers():
     methods = (DEFAULT, TUNED, PYMUNK)
-    tasks = (DirectRK4(), *map(Acrobot, methods), *map(Newton, methods))
+    tasks = (DirectRK4(), *map(Acrobot, methods), *map(NewtonBounds, methods))
     return {task: answered(task) for task in tasks}
 
 
@@ -69,7 +69,7 @@ def test_the_rocker_by_freudensteins_equation_agrees_with_the_scene():
 
 
 def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none():
-    reported = answered(Newton(TRUTH))
+    reported = answered(NewtonBounds(TRUTH))
     assert all(largest_step(reported, name) == max(NEWTON_STEPS) for name in NEWTON_BOUNDS)
     # The expected motion is a cosine, but a pendulum with the amplitude 0.05 rad is slower by 0.05^2/16.
     assert reported.array("period") == pytest.approx(1.1e-3, rel=0.05)
@@ -78,7 +78,7 @@ def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none()
 
 
 def test_the_bounds_distinguish_default_and_tuned(answers):
-    loose, tight = answers[Newton(DEFAULT)], answers[Newton(TUNED)]
+    loose, tight = answers[NewtonBounds(DEFAULT)], answers[Newton(TUNED)]
     assert largest_step(tight, "angle") == max(NEWTON_STEPS)
     assert (largest_step(loose, "angle") or 0) < max(NEWTON_STEPS)
     assert largest_step(replace(loose, values={"gap": np.full(len(NEWTON_STEPS), 1.0)}), "gap") is None
