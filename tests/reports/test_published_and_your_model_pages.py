@@ -78,7 +78,7 @@ def test_a_method_with_exact_joints_passes_all_bounds_and_a_wrong_linkage_none()
 
 
 def test_the_bounds_distinguish_default_and_tuned(answers):
-    loose, tight = answers[NewtonBounds(DEFAULT)], answers[Newton(TUNED)]
+    loose, tight = answers[NewtonBounds(DEFAULT)], answers[NewtonBounds(TUNED)]
     assert largest_step(tight, "angle") == max(NEWTON_STEPS)
     assert (largest_step(loose, "angle") or 0) < max(NEWTON_STEPS)
     assert largest_step(replace(loose, values={"gap": np.full(len(NEWTON_STEPS), 1.0)}), "gap") is None
