@@ -48,7 +48,7 @@ def environment():
 
 
 def one_line(err):
-    err = re.sub(r"^compiling the judge's machine code.*\n", "", err)
+    err = re.sub(r"^compiling the judge's machine code.*\n", "", err, flags=re.MULTILINE)
     assert len(err.strip().splitlines()) == 1, err
     assert err.startswith("crosscheck: ")
     return err
