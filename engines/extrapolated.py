@@ -44,7 +44,7 @@ WATCHED = 300_000
 
 @runtime_checkable
 class Watched(Protocol):
-    """A run that can compute the reactions at every `each`-th sample alone; the other reactions are NaN."""
+    """A run that can skip reactions: it computes them at every `each`-th sample, and the others are NaN."""
 
     def watched(self, samples: Count, every: Count, each: Count) -> Trajectory: ...
 

@@ -80,7 +80,7 @@ def _release(version: object) -> tuple[int, ...]:
 
 
 def _is_changed(file: metadata.PackagePath) -> bool:
-    """Whether a file was changed since its installation; the result is False without a digest."""
+    """Whether a file was changed since its installation. False if no digest is recorded."""
     if file.hash is None or file.hash.mode != "sha256":
         return False
     try:

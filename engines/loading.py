@@ -173,7 +173,7 @@ def registered(
     known: Mapping[str, Any] = MappingProxyType({}),
     extras: bool = False,
 ) -> Registered:
-    """All values of a group with unique names. For equal names, our value or the first distribution's value is used.
+    """All values of a group with unique names. Of several values with one name, ours is used, or else the first.
 
     known: values of other groups by name; a different value with a known name is left out.
     extras: whether to use entry points with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, or those without.

@@ -130,7 +130,7 @@ def leaves_the_mechanism_alone(subject: CheckedEngine, world: World) -> None:
 
 
 def sampling_changes_nothing(subject: CheckedEngine, world: World) -> None:
-    """A run that records each third state has the same states as a run that records all, to rounding."""
+    """A run that records every third state has the same states there, up to rounding, as a run that records all."""
     samples, every = COARSE_SAMPLING
     dense, sparse = subject.run(world.mechanism), subject.run(world.mechanism, CHECK_STEP, samples, every)
     # A run claims no accuracy after `unresolved_at`. The two runs may have different values of `unresolved_at`.

@@ -231,7 +231,7 @@ def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
 def unit_of_mass(mechanism: Mechanism) -> float:
     """A power of two near the mechanism's mass [kg], or near its inertia [kg m^2] if this number is larger.
 
-    MuJoCo accepts no mass and no regularisation (an inverse mass or inertia) below mjMINVAL, 1e-15.
+    MuJoCo refuses a mass below mjMINVAL, 1e-15. It also refuses a regularisation, an inverse mass, below that.
     """
     mass = sum(body.mass for body in mechanism.bodies)
     smallest = min(min(body.mass, body.inertia) for body in mechanism.bodies)

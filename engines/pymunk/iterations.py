@@ -41,8 +41,8 @@ CONVERGED_RESIDUAL = 1e-16
 # Number of stages of the start-up. The last stage ends at the tenth step, which is often the first sample.
 STARTUP_STAGES = 6
 
-# Number of poses of the pilot run, for up to DENSE rows and for more rows. With more rows, a pose takes as long as some
-# hundred steps.
+# A pilot run has PILOT_POSES poses for up to DENSE rows. For more rows it has FEW_PILOT_POSES, since a pose then takes
+# as long as some hundred steps.
 PILOT_POSES, FEW_PILOT_POSES = 16, 2
 # Number of steps of the pilot run per radian of the fastest motion.
 PILOT_STEPS = 20

@@ -226,7 +226,7 @@ def _sampled(scene: Scene) -> Trajectory:
 
 
 def _lag_errors(scene: Scene) -> Mapping[str, float]:
-    """Quantity -> error of the reference motion with a delay of one interval, divided by the delay [s]."""
+    """Return for each quantity the error of a motion that is one interval late, divided by the interval [s]."""
     mechanism, truth = scene.mechanism(), _sampled(scene)
     names = ("t", "pose", "twist", "reaction")
     now, before = (

@@ -13,7 +13,7 @@ CHECKS = ("outcome", *dict.fromkeys(quantity.check for quantity in QUANTITIES), 
 CHANGE = "change"  # The check against a baseline, whose failure no known deviation excuses.
 BEGINNINGS = ("upstream:", "by design:", "ours:")
 WORSE_DEVIATION = 2.0  # A deviation fails if it exceeds the known deviation by this factor.
-BACK = 0.5  # A known deviation below this share of the bound no longer occurs, which fails too.
+BACK = 0.5  # If a known deviation is below this share of the bound, its entry is outdated, and the check fails.
 ROUNDED = 10.0  # The factor for amplified rounding. Another processor changed such deviations by factors of 2 and 1/17.
 
 

@@ -121,7 +121,7 @@ def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
 
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
-    """Yield the messages of the process (`answer`), and a Loss if the process ends before its last message."""
+    """Yield the messages that `answer` sends. If its process ends before the last message, yield a Loss."""
     with temporary_folder() as folder:  # Files of engines are deleted with this folder.
         error_file = folder / "said.txt"
         with error_file.open("wb") as errors:

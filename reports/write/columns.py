@@ -276,7 +276,7 @@ def within_budget(line: EngineLine, column: Column) -> str:
 
 
 def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
-    """A table for each engine with the least CPU times [ms/s] for errors below TARGETS."""
+    """For each engine, a table of the least CPU times [ms/s] at which the error is below each of TARGETS."""
 
     def least_costs(line: EngineLine, column: Column) -> str:
         costs = [

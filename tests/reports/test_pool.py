@@ -32,7 +32,7 @@ from tests.wrong.adapters import Wrong
 
 pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 
-# Engine of a job -> (outcome, part of the outcome's sentence).
+# The engine of a job -> the outcome of the job, and a part of the sentence that describes the outcome.
 ENDS = {
     RoughToy("segfault"): ("aborted", "aborted with signal 11 (SIGSEGV)"),
     RoughToy("closes files"): ("aborted", "exit status 1"),

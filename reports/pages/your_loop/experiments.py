@@ -102,7 +102,7 @@ LINKAGE_STEP = 1 / 240  # s.
 
 
 def run_lines(space: pymunk.Space, lines: str) -> dict[str, Any]:
-    """Run the lines with the name `space`, and return their global names."""
+    """Execute lines of Python in which `space` is defined, and return the global names after them."""
     names: dict[str, Any] = {"pymunk": pymunk, "space": space, "print": lambda *words: None}
     exec(lines, names)
     return names
