@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from engines import Regularisation
 from engines.lagrange.dynamics import ADAPTIVE_DOP853, NO_STAGES, PROJECTION_ITERATIONS, Tableau
-from engines.lagrange.loading import CompiledFunctions, compiled
+from engines.lagrange.loading import CompiledFunctions, compiled, compiling_once
 from engines.lagrange.records import (
     CELL_SIZE,
     Records,
@@ -246,12 +246,13 @@ def compile_functions(adaptive: bool) -> None:
     collects = gc.isenabled()
     gc.disable()
     try:
-        poses, twists = model.empty_samples(1)
-        if adaptive:
-            model.adaptive_steps(1e-3, 1.0, 0, poses, twists)
-        else:
-            model.fixed_steps(NO_STAGES, 0, 1.0, 1, 0, poses, twists)
-        model.reactions(1.0, poses, twists)
+        with compiling_once(adaptive):
+            poses, twists = model.empty_samples(1)
+            if adaptive:
+                model.adaptive_steps(1e-3, 1.0, 0, poses, twists)
+            else:
+                model.fixed_steps(NO_STAGES, 0, 1.0, 1, 0, poses, twists)
+            model.reactions(1.0, poses, twists)
     finally:
         if collects:
             gc.enable()

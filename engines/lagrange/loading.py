@@ -5,8 +5,8 @@ code from files in a fraction of a second. numba is imported at the first step.
 
 numba's cache checks the source file of a called function, but not the sources of the functions that it calls. The name
 of the folder therefore contains a digest of all sources. The folder is in NUMBA_CACHE_DIR if this variable is set.
-Otherwise the folder is next to the sources, or in the user's cache folder if the installation is read-only. Two
-processes may compile at the same time, since numba replaces whole files.
+Otherwise the folder is next to the sources, or in the user's cache folder if the installation is read-only. If several
+processes need the same functions, one of them compiles, and the others wait (`compiling_once`).
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -53,6 +53,21 @@ def add_numpy_seconds(seconds: float) -> None:
 
 def _numpy_record() -> Path:
     return _cache_folder() / "numpy-seconds.txt"
+
+
+@contextmanager
+def compiling_once(adaptive: bool) -> Iterator[None]:
+    """Wait until no other process compiles the functions of such a run, so that this one reads their machine code.
+
+    The system releases the lock of a process that is killed. Without file locks each process compiles.
+    """
+    with ExitStack() as stack:
+        if is_cold(adaptive):
+            with suppress(ImportError, OSError):
+                from fcntl import LOCK_EX, flock  # not on Windows
+
+                flock(stack.enter_context((_cache_folder() / "lock").open("w")), LOCK_EX)
+        yield
 
 
 class CompiledFunctions(NamedTuple):
