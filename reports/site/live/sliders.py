@@ -32,7 +32,7 @@ ENGINES: dict[Name, dict[str, tuple[str, tuple[tuple[Any, str], ...]]]] = {
         "bias": ("error_bias: residual gap after a second", BIASES),
     },
     "mujoco": {
-        "integrator": ("integrator", INTEGRATORS),
+        "integrator": ("integrator: method of a step", INTEGRATORS),
         "timeConstant": ("solref: time constant", TIME_CONSTANTS),
         "impedance": ("solimp: impedance", IMPEDANCES),
         "solverIterations": ("iterations of the solver", SOLVER_ITERATIONS),
