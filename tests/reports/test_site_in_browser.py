@@ -27,6 +27,7 @@ from tests.reports.site_in_browser import (
     address,
     chromium,
     files,
+    new_page,
     number_of,
     opened,
     python_of,
@@ -268,6 +269,39 @@ def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):
     page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('iterations 100')")
     page.locator("#part-2 .compared button").last.click()
     page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('error_bias 0 ')")
+
+
+@pytest.mark.parametrize(
+    ("blocked", "place", "words"),
+    [
+        (
+            "**/packages/mujoco.*",
+            ".legend .method-2",
+            "its file could not be loaded. Check the network",
+        ),
+        (
+            "**/live/*.json",
+            ".status",
+            "The engines could not be run: the data of this motion could not be loaded. Check",
+        ),
+        (
+            "**/worker.js",
+            ".status",
+            "The engines could not be run: their script could not be loaded. Check the network",
+        ),
+    ],
+)
+def test_a_blocked_download_has_a_readable_message(chromium, address, blocked, place, words):
+    page = new_page(chromium)
+    page.route(blocked, lambda route: route.abort())
+    page.goto(f"{address}lessons/four_bar.html")
+    page.wait_for_function(
+        "([place, words]) => document.querySelector(place).innerText.includes(words)", arg=[place, words]
+    )
+    text = page.inner_text("#lesson figure")
+    assert "http" not in text
+    assert "undefined" not in text
+    page.context.close()
 
 
 def test_numbers_and_the_legend_change_while_a_number_is_dragged(opened):

@@ -23,6 +23,9 @@ export class Lens {
     /** @type {{name: string, unit: string, at: (motion: number, frame: number) => number[]}[]} */
     this.joints = [];
     this.factor = 1;
+    /** @type {number[]} the largest gap of each joint */
+    this.largest = [];
+    this.scaled = 0; // `drawn` when the scale was chosen; reading it in each frame would force a layout
     this.enlarged = 1; // factor of the differences in the main picture
     this.frame = 0;
     this.choice.addEventListener("change", () => this.scale());
@@ -47,8 +50,8 @@ export class Lens {
     ];
     this.place.hidden = !this.joints.length || !take.motions.length;
     if (this.place.hidden) return;
-    const largest = this.joints.map((_, index) => this.most(index));
-    const worst = largest.indexOf(Math.max(...largest));
+    this.largest = this.joints.map((_, index) => this.most(index));
+    const worst = this.largest.indexOf(Math.max(...this.largest));
     this.choice.replaceChildren(...this.joints.map(({ name }, index) => new Option(`${index === worst ? "worst: " : ""}${name}`, String(index), false, index === worst)));
     this.scale();
   }
@@ -65,8 +68,9 @@ export class Lens {
 
   /** Return the magnification at which the largest gap fills the picture. */
   scale() {
-    const most = this.most(Number(this.choice.value));
+    const most = this.largest[Number(this.choice.value)];
     this.factor = most > 0 ? (0.42 * SIZE) / most : 0;
+    this.scaled = this.drawn;
     this.show(this.frame);
   }
 
@@ -97,7 +101,7 @@ export class Lens {
       parts.push(svg("text", { x: 10, y: SIZE - 18 }, `${told(bar)} ${joint.unit}`));
     }
     this.picture.replaceChildren(...parts);
-    const enlarged = this.drawn ? factor / this.drawn / this.enlarged : 0;
+    const enlarged = this.scaled ? factor / this.scaled / this.enlarged : 0;
     const times = joint.unit === "m" && factor && enlarged ? `, ${Number(enlarged.toPrecision(1)).toLocaleString("en")} times as large as above` : "";
     this.words.textContent = `${joint.unit === "m" ? "Open" : "Slips"} by: ${remarks.join(", ")}${times}.`;
   }

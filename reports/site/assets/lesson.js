@@ -57,13 +57,14 @@ function load() {
     if (why) one?.reject(new Error(why));
     else one?.resolve(answer);
   };
-  worker.onerror = (event) => failed(new Error(event.message ?? "the worker could not start"));
+  worker.onerror = (event) => failed(new Error(event.message || "their script could not be loaded. Check the network, then reload the page"));
   ask({ kind: "load", folder: base, packages: `${base}packages/`, wanted: (root.dataset.engines ?? "").split(" ") }).catch(failed);
   find(".status").textContent = "Loading the engines.";
 }
 
 /** @param {unknown} reason */
 function failed(reason) {
+  for (const mark of Object.values(MARKS)) find(`.legend .method-${mark} .figure`).textContent = "";
   find(".status").textContent = `The engines could not be run: ${reason instanceof Error ? reason.message : reason}`;
 }
 
@@ -81,6 +82,8 @@ function run(play) {
   if (!busy) requestAnimationFrame(next);
 }
 
+const pause = () => new Promise((resolve) => setTimeout(resolve));
+
 async function next() {
   if (!waiting || busy) return;
   const { setting, play, ways } = waiting;
@@ -88,7 +91,7 @@ async function next() {
   try {
     load();
     const answer = await ask({ setting });
-    show(answer, play, ways);
+    await show(answer, play, ways);
     if (answer.exact.computed && !waiting) {
       const missed = await ask({ kind: "check", setting });
       if (shown === answer) find(".status").textContent = statusOf(answer, missed);
@@ -112,7 +115,7 @@ function stage({ drawing, motions }) {
 }
 
 /** @param {Answer} answer @param {boolean} play @param {Record<string, string>} ways */
-function show(answer, play, ways) {
+async function show(answer, play, ways) {
   shown = answer;
   const { motions, exact, lost } = answer;
   player.stop();
@@ -123,6 +126,8 @@ function show(answer, play, ways) {
     ...answer, size: answer.drawing.size, truth: exact,
     motions: motions.map((/** @type {any} */ motion) => ({ ...motion, name: NAMES[motion.name], mark: MARKS[motion.name] })),
   });
+  await pause(); // the picture is drawn before the magnifier is computed
+  if (player.take) player.lens.load(player.take);
   for (const name in NAMES) {
     const entry = find(`.legend .method-${MARKS[name]}`);
     const from = motions.find((/** @type {any} */ one) => one.name === name)?.from;

@@ -159,12 +159,21 @@ function fromOrigins(state, plan) {
   return state;
 }
 
-/** Load the engines; null for an engine that this site does not contain. @param {string} packages @param {string[]} wanted */
+/** Load the engines; null for an engine that this site does not contain, or that could not be loaded. `why`: the reason.
+ * @param {string} packages @param {string[]} wanted */
 export async function load(packages, wanted) {
-  const one = async (/** @type {string} */ name, /** @type {object} */ given) => (await import(`${packages}${name}`)).default(given);
-  const [mujoco, munk] = await Promise.all([
-    wanted.includes("mujoco") ? one("mujoco.js", { printErr: () => {}, print: () => {} }) : null,
-    wanted.includes("munk2d") ? one("munk2d.js", {}) : null,
-  ]);
-  return { mujoco, munk };
+  /** @type {Record<string, string>} */
+  const why = {};
+  const one = async (/** @type {"mujoco"|"munk"} */ name, /** @type {string} */ file, /** @type {object} */ given) => {
+    why[name] = "this site was built without it";
+    if (!wanted.includes(file)) return null;
+    try {
+      return await (await import(`${packages}${file}.js`)).default(given);
+    } catch {
+      why[name] = "its file could not be loaded. Check the network or the browser's blocker, then reload the page";
+      return null;
+    }
+  };
+  const [mujoco, munk] = await Promise.all([one("mujoco", "mujoco", { printErr: () => {}, print: () => {} }), one("munk", "munk2d", {})]);
+  return { mujoco, munk, why };
 }

@@ -80,7 +80,7 @@ export class Player {
       const row = box.closest("label");
       if (row) row.hidden = !there;
     }
-    this.lens.load(take);
+    this.lens.take = null; // loaded by its own task
     this.measure(take);
     this.draw();
   }

@@ -11,18 +11,28 @@ import { measured } from "./quantities.js";
 
 /** @type {Map<string, Promise<Scene>>} */
 const scenes = new Map();
-/** @type {Promise<{mujoco: any, munk: any}>|null} */
+/** @type {Promise<{mujoco: any, munk: any, why: Record<string, string>}>|null} */
 let loading = null;
 let folder = "";
 
+/** @param {string} address @returns {Promise<Scene>} */
+async function download(address) {
+  try {
+    const answer = await fetch(address);
+    if (answer.ok) return await answer.json();
+  } catch {}
+  throw new Error("the data of this motion could not be loaded. Check the network, then reload the page");
+}
+
 /** @param {string} key @returns {Promise<Scene>} */
 async function sceneOf(key) {
-  const known = scenes.get(key) ?? fetch(`${folder}live/${key}.json`).then((answer) => answer.json());
+  const known = scenes.get(key) ?? download(`${folder}live/${key}.json`);
   scenes.set(key, known);
+  known.catch(() => scenes.delete(key)); // the next request tries again
   return known;
 }
 
-/** Return the motions, drawing, errors and quantities for a setting. @param {Setting} setting @param {{mujoco: any, munk: any}} engines
+/** Return the motions, drawing, errors and quantities for a setting. @param {Setting} setting @param {{mujoco: any, munk: any, why: Record<string, string>}} engines
  * @param {import("./quantities.js").Quantity[]} quantities */
 async function answer(setting, engines, quantities) {
   const scene = await sceneOf(setting.key);
@@ -33,7 +43,7 @@ async function answer(setting, engines, quantities) {
   /** @type {Record<string, string>} */
   const lost = {};
   for (const name of /** @type {Name[]} */ (["munk", "mujoco"])) {
-    const why = modelOf(run, name).why || (engines[name] ? "" : "this site was built without it");
+    const why = modelOf(run, name).why || (engines[name] ? "" : engines.why[name]);
     const kept = setting.own ? scene.native[name][setting[name]]?.map(doubles) : null; // stored motion of Python
     if (why && !kept) {
       lost[name] = why;
@@ -74,7 +84,7 @@ async function answer(setting, engines, quantities) {
 /** Return velocities and impulses after each iteration of one step of Munk2D; `which`: index of each joint's impulse.
  * @param {Setting} setting @param {number} frame */
 async function sweeps(setting, frame) {
-  const { munk } = await /** @type {Promise<{mujoco: any, munk: any}>} */ (loading);
+  const { munk } = await /** @type {Promise<{mujoco: any, munk: any, why: Record<string, string>}>} */ (loading);
   const scene = await sceneOf(setting.key);
   const run = runOf(setting, scene);
   const before = frame * run.every - 1; // steps
