@@ -24,7 +24,7 @@ from reports.model.tasks import Motion
 from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
-from reports.site.lesson import Experiment, Guess, Lesson, Quantity, SiteSource
+from reports.site.lesson import Experiment, Guess, Lesson, LessonQuantity, SiteSource
 from reports.site.lessons import LESSONS, take_like
 from reports.site.live.data import data, first_picture
 from reports.site.live.models import own_values
@@ -252,7 +252,7 @@ def _answer(live: Live, answer: tuple[str, bool], guess: Guess) -> dict[str, Any
     return {"words": answer[0], "right": answer[1], "change": change, "times": guess.times, "of": guess.of or ""}
 
 
-def quantity_data(live: Live, quantity: Quantity) -> dict[str, Any]:
+def quantity_data(live: Live, quantity: LessonQuantity) -> dict[str, Any]:
     """Return a quantity for the page, with the indices of its bodies."""
     mechanism = live.scene.mechanism()
     bodies = [mechanism.body_index(body) for body in quantity.bodies]

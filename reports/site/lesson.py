@@ -22,7 +22,7 @@ Kind = Literal["gap", "rates", "bend", "centre", "contact"]
 
 
 @dataclass(frozen=True)
-class Quantity:
+class LessonQuantity:
     """A number of a motion that is shown beside the errors; assets/quantities.js computes it.
 
     gap: the largest gap of a pin or slot [m]. rates: the least and the largest turning rate of a body [rad/s]. bend:
@@ -85,7 +85,7 @@ class Experiment:
     section: str = ""
     widget: str = ""
     guesses: tuple[Guess, ...] = ()
-    quantities: tuple[Quantity, ...] = ()
+    quantities: tuple[LessonQuantity, ...] = ()
 
 
 @dataclass(frozen=True)

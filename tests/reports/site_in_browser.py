@@ -18,7 +18,7 @@ from reports.cli.site import texts_of
 from reports.model.tasks import answered
 from reports.site.build import build, quantity_data, tasks
 from reports.site.folder import server, write_site
-from reports.site.lesson import Claim, Quantity, SiteSource
+from reports.site.lesson import Claim, LessonQuantity, SiteSource
 from reports.site.lessons import LESSONS
 from reports.site.live.sliders import ENGINES, INTEGRATORS, Live
 from tests import RESULTS
@@ -147,7 +147,7 @@ def run_engines(
     scene: str,
     values: dict[str, Any],
     start: list[float] | None = None,
-    quantities: Sequence[Quantity] = (),
+    quantities: Sequence[LessonQuantity] = (),
 ) -> Any:
     """Return the motions of the engines in the page for a scene with these values of its controls."""
     live = BY_NAME[lesson].scene(scene)

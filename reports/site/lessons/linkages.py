@@ -10,10 +10,10 @@ from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum, TenLinks
 from reference.scenes.slider_crank import DrivenSliderCrank, FreeSliderCrank
 from reports.pages.centrodes.page import exact
-from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, Quantity
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, LessonQuantity
 from reports.site.live.sliders import Live, Point, Slider
 
-JOINTS_OPEN = Quantity("gap", "widest gap of a joint")
+JOINTS_OPEN = LessonQuantity("gap", "widest gap of a joint")
 RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)
 DENSITIES = tuple(1.0 if ratio == 1 else (1.0, ratio, 1.0) for ratio in RATIOS)
 DENSITY = Slider("density", "the coupler's density to that of the others", DENSITIES, tuple(map("{:g}".format, RATIOS)))
@@ -330,7 +330,7 @@ CENTRODES = Lesson(
                 Guess(times={"munk": 0.01, "mujoco": 0.01}, of="centre"),
                 Guess(),
             ),
-            quantities=(Quantity("centre", "median distance of the centres", ("coupler",)),),
+            quantities=(LessonQuantity("centre", "median distance of the centres", ("coupler",)),),
         ),
     ),
 )

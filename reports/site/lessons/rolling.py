@@ -9,7 +9,7 @@ from engines.pymunk.joints.roll import ContactSettings
 from engines.pymunk.methods import ROLL_FACETED
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
-from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, Quantity
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, LessonQuantity
 from reports.site.lessons.linkages import CENTRODES
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
@@ -110,8 +110,8 @@ GEARS = Lesson(
             section="Elliptic gears",
             guesses=(Guess(times={"exact": 0.0}, of="rates"), Guess(), Guess()),
             quantities=(
-                Quantity("rates", "the second gear turns at", ("second",)),
-                Quantity("contact", "the sum of the distances changes by"),
+                LessonQuantity("rates", "the second gear turns at", ("second",)),
+                LessonQuantity("contact", "the sum of the distances changes by"),
             ),
         ),
         Experiment(
@@ -133,7 +133,7 @@ GEARS = Lesson(
             overlays=FORCES,
             section="The contact",
             guesses=(Guess(times={"munk": 0.0}, of="rates"), Guess(), Guess(times={"munk": 1.0})),
-            quantities=(Quantity("rates", "the second gear turns at", ("second",)),),
+            quantities=(LessonQuantity("rates", "the second gear turns at", ("second",)),),
         ),
     ),
 )

@@ -6,7 +6,7 @@ from engines import pymunk
 from engines.pymunk.methods import SKATE_CENTRE, SKATE_PROJECTED
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.wheels.vehicles import CarAndTrailer
-from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, Quantity
+from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, LessonQuantity
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
 NAIVE, PROJECTED = "naive: the centre's sideways velocity set to zero", "our code: an impulse at the blade"
@@ -154,7 +154,7 @@ WHEELS = Lesson(
             {"bend": 0.2},
             (Claim("exact", 0.52, 0.57, "bend"), Claim("munk", 0.52, 0.57, "bend")),
             guesses=tuple(Guess(times=dict.fromkeys(("exact", "munk"), by), of="bend") for by in (0.25, 0.55, 1.0)),
-            quantities=(Quantity("bend", "the bend is 1 rad after", PARTS),),
+            quantities=(LessonQuantity("bend", "the bend is 1 rad after", PARTS),),
         ),
     ),
 )
