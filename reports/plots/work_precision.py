@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import Any, Literal
 
 import numpy as np
@@ -200,6 +201,8 @@ def _guides(panel: Axes) -> None:
 
 
 COMPARED_HEIGHT = 6.2  # inches
+NOTE_WIDTH = 27  # Characters of a line of a panel's note.
+NOTE_HEIGHT = 0.075  # Height of a line of a panel's note, relative to the panel.
 MAIN_ENGINES = ("pymunk", "mujoco")
 EXACT_SOLVER = "lagrange"
 ENGINE_NAMES = {
@@ -255,7 +258,8 @@ def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
                     for reason, names in row.absent.get(column, {}).items()
                     if names
                 ]
-                _write(panel, 0.98, 0.98, "\n".join(absent), "right")
+                lines = [line for sentence in absent for line in wrap(sentence, NOTE_WIDTH)]
+                _write(panel, 0.98, 0.04 + NOTE_HEIGHT * len(lines), "\n".join(lines), "right")
                 panel.set_title(f"{row.title}, {column}", loc="left", fontweight="bold", fontsize=9, color=LIGHT.ink)
             panels[0].set_ylabel(row.axis)
         _write(grid[0][0], 0.02, 0.12, "better: lower\nand further left", "left")

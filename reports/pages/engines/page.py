@@ -102,7 +102,8 @@ class Capabilities(BuildingTask):
         values["reactions"] = "yes" if all(finite) else "not at the start" if all(finite[1:]) else "no"
         # Velocities are the engine's numbers, whereas our code may compute poses from the engine's coordinates.
         velocity = run.twist[1:]
-        values["width"] = "32 bits" if np.array_equal(velocity, velocity.astype(np.float32)) else "64 bits"
+        is_single = self.method.precision > 0 or np.array_equal(velocity, velocity.astype(np.float32))
+        values["width"] = "32 bits" if is_single else "64 bits"
         return values
 
     def _build(self, mechanism: Mechanism) -> tuple[str, str]:
