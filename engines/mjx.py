@@ -235,8 +235,8 @@ def _solver_residual(model: MuJoCoModel, data: Any, answer: Any) -> float:
 def run_worlds(engine: Mjx, mechanisms: Sequence[Mechanism], dt: float, steps: int) -> tuple[Array, float]:
     """The same as `engines.mujoco_warp.run_worlds`; `jax.vmap` maps over the fields that differ between mechanisms."""
     import jax
-    import jax.numpy as jnp
 
+    jnp = jax.numpy
     models = [engine.compiled(mechanism, dt) for mechanism in mechanisms]
     (mjx, several, _), one = _programs(), DeviceModel(models[0])
     changed = {}

@@ -100,8 +100,9 @@ class Child:
 
     def close(self) -> None:
         for pipe in (self.process.stdin, self.process.stdout):
-            with suppress(OSError):
-                pipe and pipe.close()
+            if pipe is not None:
+                with suppress(OSError):
+                    pipe.close()
 
     def ask(self, operation: str, **request: Any) -> dict[str, Any]:
         """Send a request and return the answer. Raises Unsupported for a refusal, RuntimeError for an ended process."""
