@@ -240,11 +240,6 @@ def test_the_address_stores_only_changes_by_the_reader(opened):
     assert "up to" in linked.inner_text(".legend .method-1")
     # The sentence of the marked experiment has the linked number, also without the number of an experiment.
     assert linked.inner_text("#part-1.shown .drag[data-name=coupler]") == "0.65"
-    linked = opened("lessons/four_bar.html#set&part=4&scene=1&1.steps=1", viewport=TALL)
-    linked.wait_for_selector("#lesson.ready")
-    steps = linked.text_content("#part-4.shown .drag[data-name=steps]")
-    assert steps != linked.text_content("#part-5 .drag[data-name=steps]")
-    assert steps == linked.evaluate("crosscheck.form.words('steps')")
 
 
 def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):
