@@ -97,11 +97,15 @@ def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, du
 
 
 def _engine_named(name: str) -> Engine:
-    """The engine that "NAME" or "NAME VARIANT" names. Raises ValueError."""
-    engines = {method_name(engine): engine for engine in registry.ENGINES}
+    """The engine that "NAME" or "NAME VARIANT" names. Raises ValueError, also for an engine that is not installed."""
+    engines = {method_name(engine): engine for engine in (*registry.ENGINES, *registry.OTHERS)}
     engine = engines.get(name) or engines.get(f"{name} default")
     if engine is None:
-        raise ValueError(f"no engine is called {name!r}; there are {', '.join(engines)}")
+        variants = [method for method, other in engines.items() if name.startswith(f"{other.name} ")]
+        known = variants or dict.fromkeys(other.name for other in engines.values())
+        raise ValueError(f"no engine is called {name!r}; there are {', '.join(known)}")
+    if engine.missing:
+        raise ValueError(engine.missing)
     return engine
 
 

@@ -119,7 +119,7 @@ def choose_cells(
         compared = grid_engines(scene, engines, pages)
         cells += sweep_cells((scene,), compared, FULL if full else QUICK)
         cells += usual_cells((scene,), compared) if full else ()
-        cells += beside_cells((scene,), _beside(engines))
+        cells += beside_cells((scene,), _beside(engines), named=named)
     cells += [
         cell
         for page in pages
@@ -128,7 +128,7 @@ def choose_cells(
         if cell.engine in engines and (full or (cell.purpose != "large" and not (alone and cell.scene not in scenes)))
     ]
     cells = list(dict.fromkeys(cells))
-    return tuple(cells) if full else _quick(cells, math.inf if named else QUICK_CELL)
+    return tuple(cells) if full else _quick(cells, named)
 
 
 def left_out(
@@ -162,10 +162,11 @@ def choose_tasks(
     return tuple(dict.fromkeys(tasks))
 
 
-def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
-    """The cells of a quick run are all short cells, and each method's shortest cell if it takes at most `most` [s].
+def _quick(cells: Sequence[Cell], named: bool) -> tuple[Cell, ...]:
+    """The cells of a quick run are all short cells, and each method's shortest cell if it takes at most QUICK_CELL.
 
-    For an engine outside the grid only the longest of the short cells is run. Times are estimated by the engines'
+    For an engine outside the grid only the longest of the short cells is run. The shortest cell of an engine that the
+    user has `named` is always run. Times are estimated by the engines'
     formulas, so the choice does not depend on the machine.
     """
     groups: dict[tuple[Scene, Engine, str], list[Cell]] = {}
@@ -175,8 +176,11 @@ def _quick(cells: Sequence[Cell], most: float) -> tuple[Cell, ...]:
     for (_, _, purpose), members in groups.items():
         ordered = sorted(members, key=estimated_seconds)
         short = [cell for cell in ordered if estimated_seconds(cell) <= QUICK_SECONDS]
-        least = [cell for cell in ordered[:1] if estimated_seconds(cell) <= most]
-        chosen.update(short[-1:] if purpose == "beside" else (*short, *least))
+        least = [cell for cell in ordered[:1] if named or estimated_seconds(cell) <= QUICK_CELL]
+        if purpose != "beside":
+            chosen.update((*short, *least))
+        else:
+            chosen.update(short[-1:] or (least if named else ()))
     return tuple(cell for cell in cells if cell in chosen)
 
 

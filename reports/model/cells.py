@@ -150,12 +150,15 @@ def sweep_cells(
     return tuple(cell for cell in cells if cell.every == steps[0] or not too_much(cell, cost_limit, divided))
 
 
-def beside_cells(scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False) -> tuple[Cell, ...]:
+def beside_cells(
+    scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False, named: bool = False
+) -> tuple[Cell, ...]:
     """Cells of engines outside the grid at the steps in QUICK. Cells that take longer than BESIDE_LIMIT are left out.
 
-    Without `sweep` only the finest step remains.
+    Without `sweep` only the finest step remains. Engines whose models take long to build are included if the user has
+    `named` them.
     """
-    engines = tuple(engine for engine in engines if engine.build_time < SLOW_TO_BUILD)
+    engines = tuple(engine for engine in engines if named or engine.build_time < SLOW_TO_BUILD)
     out: list[Cell] = []
     for scene in scenes:
         for engine in engines:

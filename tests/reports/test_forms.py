@@ -8,6 +8,7 @@ import re
 import pytest
 
 from engines.lagrange.engine import Lagrange
+from engines.registry import OTHERS
 from reports.cli.commands import invoke
 from reports.cli.selection import choose_cells, left_out
 from reports.cli.terminal import print_table, telling
@@ -69,6 +70,13 @@ def test_a_slow_engine_that_is_named_runs_the_largest_step_and_other_steps_are_r
     assert [cell.every for cell, _ in omitted] == list(QUICK[1:])
     for cell, reason in omitted:
         assert re.fullmatch(rf"step_cost says {scene.samples * cell.every} s, and a run may take 0\.8 s", reason)
+
+
+def test_an_engine_that_compiles_for_long_is_run_only_if_it_is_named():
+    scene = Disc()
+    for engine in (engine for engine in OTHERS if engine.build_time > 1):
+        assert choose_cells([scene], [engine], [], full=False) == choose_cells([scene], [engine], [], full=True) == ()
+        assert [cell.engine for cell in choose_cells([scene], [engine], [], full=False, named=True)] == [engine]
 
 
 def test_a_small_store_gives_only_pages_with_rows_and_no_dead_links(tmp_path, capfd):

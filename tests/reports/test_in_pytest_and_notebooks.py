@@ -15,9 +15,10 @@ import pytest
 
 import engines.conformance
 import planar_crosscheck
-from engines import importers
+from engines import importers, method_name
 from engines.conformance import CHECKS, conform
 from engines.pymunk import DEFAULT
+from engines.registry import OTHERS
 from reference.checks import InvalidMechanism
 from reference.linkage import linkage
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -89,8 +90,14 @@ def test_a_comparison_has_the_run_of_the_engine_and_the_exact_motion(monkeypatch
     assert np.abs(result.truth.pose - truth.pose).max() < 1e-9
     off = np.abs(result.run.pose - truth.pose)[..., 2].max()
     assert result.errors.worst["angle"] == pytest.approx(off, rel=1e-6)
-    with pytest.raises(ValueError, match="no engine is called 'pymunky'; there are pymunk default"):
+    with pytest.raises(ValueError, match="no engine is called 'pymunky'; there are pymunk, mujoco"):
         planar_crosscheck.compare(scene.mechanism(), "pymunky", 1e-3)
+    with pytest.raises(ValueError, match="no engine is called 'pymunk fine'; there are pymunk default, pymunk tuned"):
+        planar_crosscheck.compare(scene.mechanism(), "pymunk fine", 1e-3)
+    for extra in OTHERS:
+        if extra.missing:
+            with pytest.raises(ValueError, match=re.escape(extra.missing)):
+                planar_crosscheck.compare(scene.mechanism(), method_name(extra), 1e-3)
     with pytest.raises(ValueError, match="dt is 3 s and duration"):
         planar_crosscheck.compare(scene.mechanism(), DEFAULT, 3, 1.0)
     # A substitute for pandas, which is optional, returns its arguments.
