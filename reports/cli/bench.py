@@ -108,13 +108,11 @@ def _print_judge() -> None:
 def _print_worlds(counts: Sequence[str], device: str | None) -> None:
     """Print steps per second. By default the numbers of worlds are those of the benchmark."""
     choose_device(device)
-    try:
-        numbers = tuple(map(int, counts)) or WORLD_COUNTS
-    except ValueError:
-        raise BadInput(f"bench worlds: {' '.join(counts)!r} are no numbers of worlds, such as 1 64 4096") from None
+    if not all(word.isdecimal() and int(word) for word in counts):
+        raise BadInput(f"bench worlds: {' '.join(counts)!r} are no numbers of worlds, such as 1 64 4096")
     body = [
         (cost.method, str(cost.worlds), number(cost.steps_per_second), number(cost.error))
-        for cost in measure_worlds(numbers)
+        for cost in measure_worlds(tuple(map(int, counts)) or WORLD_COUNTS)
     ]
     _print("many worlds", ("method", "worlds", "steps of a world per second", "angle error [rad]"), body)
 

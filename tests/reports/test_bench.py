@@ -72,8 +72,9 @@ def test_a_program_of_many_worlds_is_compared_with_the_judge_and_left_out_where_
     assert [cost.method for cost in later] == [judge.method]
 
 
-def test_a_count_of_worlds_that_is_no_number_and_an_unknown_device_are_refused():
-    with pytest.raises(BadInput, match="'many' are no numbers of worlds"):
-        _print_worlds(["many"], None)
+def test_counts_of_worlds_that_are_not_positive_and_an_unknown_device_are_refused():
+    for count in ("many", "0", "-1"):
+        with pytest.raises(BadInput, match=f"'{count}' are no numbers of worlds"):
+            _print_worlds([count], None)
     with pytest.raises(BadInput, match="--device abacus: it must be cpu or cuda"):
         _print_worlds([], "abacus")
