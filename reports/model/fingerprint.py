@@ -59,11 +59,9 @@ def _versions(modules: frozenset[str], packages: frozenset[str], folders: tuple[
             versions[f"files of {module}"] = _content(files)
         else:
             distributions.update(_distributions().get(module, ()))
-    for name in sorted(with_required(distributions | _rivals(packages))):
-        versions[name] = metadata.version(name)
-    for name in packages:  # Some of them are npm packages.
-        with suppress(metadata.PackageNotFoundError):
-            versions.setdefault(normalised(name), installed_version(name))
+    for name in sorted(with_required(distributions | _rivals(packages)) | packages):
+        with suppress(metadata.PackageNotFoundError):  # An engine's package may not be installed.
+            versions[normalised(name)] = installed_version(name)
     return {**versions, "Python": platform.python_version(), "our source files": _our_files(folders)[:12]}
 
 

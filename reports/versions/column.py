@@ -29,7 +29,6 @@ from reports.run.supervisor import WorkersLost
 from reports.versions.trees import Trees, engines_for_trees
 
 MARK = "known to be wrong"  # Our adapters write these words into the sentence of each row of a faulty release.
-# Python raises these exceptions if our adapter uses a name that does not exist in this version.
 LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
 LONGEST_LAST_LINE = 300  # Largest number of characters from the last line that a process has printed.
 
@@ -113,8 +112,13 @@ def cells_of(request: VersionRequest, engines: Sequence[Engine]) -> list[Cell]:
     return [cell for cell in cells if estimated_cost(cell) <= request.most]
 
 
+def lacks_a_name(result: Measurement | Answer) -> bool:
+    """Whether a run failed because our adapter uses a name that does not exist in this version."""
+    return result.outcome in (Outcome.FAILED, Outcome.LOST) and result.sentence.startswith(LACKING)
+
+
 def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
-    if row.outcome in (Outcome.FAILED, Outcome.LOST) and row.sentence.startswith(LACKING):
+    if lacks_a_name(row):
         sentence = f"{row.engine} {version} lacks what our adapter calls: {row.sentence.partition(': ')[2]}"
         return replace(row, outcome=Outcome.UNSUPPORTED, sentence=sentence)
     return row

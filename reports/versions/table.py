@@ -19,7 +19,7 @@ from reports.model.quantities import DIGITS, agrees, quantity
 from reports.model.tasks import Answer
 from reports.run.installed import numbers
 from reports.versions.catalogue import compared_versions
-from reports.versions.column import VersionColumn
+from reports.versions.column import VersionColumn, lacks_a_name
 from reports.versions.trees import Trees
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
@@ -106,7 +106,7 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
         wrong = sum(not miss <= WRONG_TREE for miss in misses)
         error = max((math.inf if math.isnan(miss) else float(miss) for miss in misses), default=math.nan)
         sentence = f"{wrong} of {len(misses)} by more than {WRONG_TREE:g}"
-    elif "Error: " in answer.sentence:  # A name does not exist in the version.
+    elif lacks_a_name(answer):
         outcome = Outcome.UNSUPPORTED
     scene = f"random trees ({trees.bodies} bodies, {trees.loops} loops)"
     method = (scene, trees.method.variant, math.nan, ACCELERATION)
