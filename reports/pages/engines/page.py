@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from engines import Unsupported, method_name, registry
+from engines import Unsupported, method_name, pymunk, registry
 from engines.conformance.moving import FORCE_EXAMPLES
 from engines.conformance.worlds import MOVING, WORLDS
 from engines.tree import spanning_tree
@@ -39,6 +39,7 @@ from reports.plots.theme import svg
 from reports.plots.work_precision import work_precision
 from reports.write.columns import Column, column_of
 from reports.write.provenance import engine_versions
+from reports.write.rows import Rows
 from reports.write.tables import markdown, number
 
 Array = NDArray[np.float64]
@@ -77,8 +78,6 @@ ELEMENT_EXAMPLES = {
     "disc rolls in a ring": WORLD["disc in a hole"],
 }
 
-# Engines that build blades and rims without contact, by a velocity constraint.
-ROLLING_JOINTS = {"lagrange", "exudyn"}
 YES, CONTACT, CODE = "yes", "by contact", "with our code"
 HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 
@@ -115,7 +114,7 @@ class Capabilities(BuildingTask):
         except (AttributeError, ImportError, TypeError) as error:
             return TOO_OLD, f"this release lacks a function that our adapter calls: {describe(error)}"
         rolls = any(isinstance(joint, Skate | Roll) for joint in mechanism.joints)
-        result = CONTACT if rolls and self.method.name not in ROLLING_JOINTS else YES
+        result = CONTACT if rolls and self.method.uses_contacts else YES
         with suppress(ValueError):
             enforcement = {self.method.enforcement(joint, mechanism) for joint in mechanism.joints}
             if mechanism.forces:
@@ -312,11 +311,14 @@ def velocity_terms(material: Material) -> str:
 
 def context(material: Material) -> Mapping[str, Any]:
     answers = {task: answer for task in MATRIX if (answer := material.finished(task)) is not None}
+    four_bar = Rows(rows_of(material, [FREE_LOOP.name]))
     return {
         "matrix": matrix(answers),
         "refused": refusals_of(answers),
         "terms": velocity_terms(material),
         "absent": list(registry.ABSENT.values()),
+        "at_1_ms": lambda method: four_bar.of(method=method).at(1e-3),
+        "closed_by_pymunk": 1 - pymunk.SHIPPED_ERROR_BIAS**1e-3,
     }
 
 
