@@ -13,8 +13,8 @@ then takes 17 us instead of 3 ms, and its result has the same bits.
 Rounding determines the settings of *tuned*. In single precision a loop is open by about 6e-8 m. With a time constant of
 5 ms, this gap causes an acceleration of 2.5e-3 m/s^2, which is 0.4 % of the first acceleration of a four-bar. A small
 compliance also makes the solver's equations ill-conditioned. Therefore the stiffest `solimp`, 0.9999, is not the best.
-For the free four-bar (RK4, 1 ms) it gives an error of 2.1e-4 rad. With `solimp` 0.997 and a time constant of 2.5 steps
-the error is 4e-5 rad. From 0.99 to 0.999 the errors differ by less than a factor of three. `put_model` raises the
+For the four-bar in README (RK4, 1 ms) it gives an error of 2.1e-4 rad, but 4e-5 rad with `solimp` 0.997 and a time
+constant of 2.5 steps. From 0.99 to 0.999 the errors differ by less than a factor of three. `put_model` raises the
 solver's tolerance to at least 1e-6. Without a tolerance a step takes ten times as long, and the error is not smaller.
 Our adapter sets the tolerance after `put_model`, relative to the inertia of the coordinates without drives
 (`engines.mujoco.model`). Otherwise the large inertia of a drive would end the solver at once.

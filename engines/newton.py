@@ -4,8 +4,8 @@ Bodies are free and all joints are constraints. A Pin is a revolute joint about 
 outside the articulations closes a loop, as in Newton's examples. Our code computes force elements before every step and
 passes them as forces on bodies. Accelerations are changes of velocity over the last step.
 
-The following errors are those of the free four-bar at 1 ms. *default* is Kamino as shipped, with the backend PADMM and
-`alpha` 0.01. A step closes 1 % of a gap, and the error is 0.074 rad. *tuned* is Kamino with the backend LOX, which
+The following errors are those of the four-bar in README at 1 ms. *default* is Kamino as shipped, with the backend PADMM
+and `alpha` 0.01. A step closes 1 % of a gap, and the error is 0.074 rad. *tuned* is Kamino with the backend LOX, which
 Newton calls experimental. LOX has an error of 5.7e-3 rad, which falls with the step, and takes a tenth of the time.
 *whole gap* is PADMM with `alpha` 1, and its error is 7.1e-3 rad. At 0.25 ms PADMM has an error of 2e-3 rad with any
 `alpha`, and the backend DVI has an error of 0.06 rad. *xpbd* is XPBD as shipped, with 2 iterations and an error of 0.73
