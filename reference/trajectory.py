@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 TABLE_ROWS = 6
 # A warning about an adapter of this suite begins with this text. Stored rows contain only the text of warnings.
 ADAPTER_PREFIX = "ours:"
+KNOWN_WRONG = "known to be wrong"  # The warning about a faulty release contains these words.
 
 WarningKind = Literal[
     "contact",  # A contact is lost, or a body rotates too far in a step.

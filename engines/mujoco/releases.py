@@ -9,9 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.trajectory import RunWarning
+from reference.trajectory import ADAPTER_PREFIX, KNOWN_WRONG, RunWarning
 
-KNOWN_WRONG = "known to be wrong"  # These words are part of the warning.
 UPPER_CASE = ("RK4", "PGS", "CG")  # Constants in upper case in MJCF.
 MIXED_CASE = {"EULER": "Euler", "NEWTON": "Newton"}
 # The flag that makes MuJoCo solve all rows in one system. Before 3.3.6 MuJoCo did so by default and had no flag.
@@ -50,4 +49,4 @@ def spelled(constant: Any) -> str:
 
 def release_warnings() -> list[RunWarning]:
     fault = known_fault(mujoco.__version__)
-    return [RunWarning(f"ours: {fault}", "known fault", "adapter")] if fault else []
+    return [RunWarning(f"{ADAPTER_PREFIX} {fault}", "known fault", "adapter")] if fault else []

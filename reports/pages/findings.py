@@ -28,7 +28,7 @@ from reports.pages.faults.page import OFFSETS, SCRIPTS, is_right
 from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.versions.catalogue import COST_ROSE_IN
-from reports.versions.table import ACCELERATION, Entry, relative_cost, released
+from reports.versions.table import ACCELERATION, Entry, relative_cost, released, wrong_trees
 from reports.write.page_tables import COMPARED_STEP, advice
 from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template
@@ -197,20 +197,13 @@ def trees(sources: Sources) -> dict[str, Any]:
     newest = released().versions("mujoco")[-1]
     entries = [entry for entry in released().of("mujoco") if entry.quantity == ACCELERATION]
     last = {entry.variant: entry for entry in entries if entry.version == newest}
-    wrong_count, _, rest = last["tuned"].sentence.partition(" of ") if "tuned" in last else ("0", "", "")
+    many, total = wrong_trees(last["tuned"]) if "tuned" in last else (0, 0)
     soft, hard = (last[variant].error if variant in last else math.nan for variant in ("tuned", "extended"))
     plotted = {
         variant: of_releases(variant, [entry for entry in entries if entry.variant == variant])
         for variant in ("tuned", "extended")
     }
-    return {
-        "newest": newest,
-        "many": int(wrong_count),
-        "all": rest.partition(" ")[0],
-        "soft": soft,
-        "hard": hard,
-        **plotted,
-    }
+    return {"newest": newest, "many": many, "all": total, "soft": soft, "hard": hard, **plotted}
 
 
 # Script on the page of faults -> the fault that it shows.

@@ -15,6 +15,7 @@ from engines import Engine, registry
 from engines.imported_release import other_release
 from engines.loading import describe, is_reference
 from reference.scene import Scene
+from reference.trajectory import ADAPTER_PREFIX, KNOWN_WRONG
 from reports.model.cells import Cell, estimated_cost
 from reports.model.ending import BadInput
 from reports.model.fingerprint import ROOT
@@ -28,7 +29,6 @@ from reports.run.store import Store
 from reports.run.supervisor import WorkersLost
 from reports.versions.trees import Trees, engines_for_trees
 
-MARK = "known to be wrong"  # Our adapters write these words into the sentence of each row of a faulty release.
 LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
 LONGEST_LAST_LINE = 300  # Largest number of characters from the last line that a process has printed.
 
@@ -61,8 +61,8 @@ class VersionColumn:
     @property
     def mark(self) -> str:
         """A sentence that explains why this version is known to be wrong, or an empty text."""
-        parts = (part for row in self.rows for part in row.sentence.split("; ") if MARK in part)
-        return next(parts, "").removeprefix("ours: ")
+        parts = (part for row in self.rows for part in row.sentence.split("; ") if KNOWN_WRONG in part)
+        return next(parts, "").removeprefix(f"{ADAPTER_PREFIX} ")
 
 
 def column(

@@ -113,6 +113,12 @@ def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> 
     return Entry(engine, version, *method, error, outcome, math.nan, sentence)
 
 
+def wrong_trees(entry: Entry) -> tuple[int, int]:
+    """The numbers of wrong and of all random trees, which the sentence states; zeros without motions."""
+    words = entry.sentence.split()
+    return (int(words[0]), int(words[2])) if entry.comparable else (0, 0)
+
+
 def as_csv(table: ReleaseTable) -> str:
     """The table as CSV. The marks are comments, and the sorted entries follow."""
     out = io.StringIO()

@@ -14,7 +14,7 @@ import pytest
 
 from engines.mujoco import DEFAULT, EXTENDED, TUNED, Hardened, MuJoCo, Shipped, TiedToStep
 from engines.mujoco.methods import SLOTS
-from engines.mujoco.releases import KNOWN_WRONG, known_fault
+from engines.mujoco.releases import known_fault
 from engines.mujoco.solver_check import solver_residual
 from reference.forces import Torque
 from reference.joints import Drive, Pin, Rod, Slot
@@ -23,7 +23,7 @@ from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.pendulum.scenes import HundredLinks
 from reference.scenes.rolling.scenes import RollingDisc
 from reference.scenes.slider_crank import FreeSliderCrank, SlottedLever
-from reference.trajectory import energy
+from reference.trajectory import KNOWN_WRONG, energy
 from tests.engines.test_matrix import FREE_COORDINATES, far_drive
 from tests.mechanisms import bar, four_bar
 
