@@ -26,6 +26,8 @@ MAIN_METHODS: tuple[Engine, ...] = (*PUBLIC, pymunk.EXTENDED, mujoco.EXTENDED)
 # `lagrange` is left out, because its constraints are ideal.
 ENGINES_ALONE: tuple[Engine, ...] = tuple(engine for engine in VARIANTS if engine.name != "lagrange")
 
+CLOSED_IN_1_MS = 1 - pymunk.SHIPPED_ERROR_BIAS**1e-3  # fraction of a gap that a step of pymunk as shipped closes
+
 
 def sweeps(count: int) -> Engine:
     """pymunk with `count` iterations and `error_bias = 0`, so that each step closes the whole gap."""

@@ -22,7 +22,7 @@ from reference.scenes.four_bar.scenes import (
 from reports.model.cells import Cell
 from reports.model.page import Failure, Material, Observation
 from reports.model.tasks import Answer, Motion, Task, Values
-from reports.pages.common import MAIN_METHODS, cells, described, read_answers, refusals, scene_page
+from reports.pages.common import CLOSED_IN_1_MS, MAIN_METHODS, cells, described, read_answers, refusals, scene_page
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
 from reports.versions.table import released
@@ -148,7 +148,7 @@ def context(material: Material) -> Mapping[str, Any]:
         "soft_share": [1 / d - 1 for d in soft[:2]],  # values without a gap and with a gap of 1 mm or more
         "stiff_share": 1 / hard[0] - 1,
         "before_term": errors[0] if errors else UNMEASURED,  # rad
-        "closed_in_a_millisecond": 1 - float(pymunk.DEFAULT.error_bias) ** 1e-3,
+        "closed_in_a_millisecond": CLOSED_IN_1_MS,
     }
 
 
