@@ -22,6 +22,7 @@ from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
 Array = NDArray[np.float64]
+Method = Callable[[Mechanism], Trajectory]
 DIVERGED = 1e12  # A state with a larger component [m, rad, m/s or rad/s] has diverged.
 SOFT_TOLERANCE = 1e-10  # Relative tolerance, far below the truncation errors of engines and far above rounding.
 
@@ -76,12 +77,12 @@ def soft_motion(
 
 LOOSER_JUDGE = Lagrange(tolerance=1e-10)  # A second run, whose difference estimates the error of the reference motion.
 JUDGE_SHARE = 0.1  # Largest estimated error of the reference motion, relative to the user's tolerance.
-ALONG_CURVE_TOLERANCE = 1e-12  # Relative error of a step along the configuration curve of a mechanism with one freedom.
-LOOSER_CURVE_TOLERANCE = 1e-11  # Tolerance of a second run along the curve, which estimates the error.
+# Relative errors of a step along the configuration curve of a mechanism with one freedom. The second run estimates the
+# error of the first run.
+CURVE_TOLERANCES = 1e-12, 1e-11
 DISTURBANCE = 1e-7  # Initial disturbance relative to length and speed, small enough for linear growth.
 LINEAR_LIMIT = 1e-2  # A disturbance above this size, relative to length and speed, does not grow linearly.
-# (seed, size) of two disturbances. A motion is chaotic if both disturbances grow exponentially.
-DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))
+DISTURBANCES = ((1, DISTURBANCE), (2, DISTURBANCE / 10))  # (seed, size). In a chaotic motion both grow exponentially.
 REMAINING_SHARE = 1e-3  # If projection leaves less than this share of a disturbance, the joints do not allow it.
 # A disturbance of a regular motion grows about linearly in time. Growth that is faster by this factor is exponential.
 EXPONENTIAL_GROWTH = 100.0
@@ -117,7 +118,6 @@ def reference_motion(
 
     Raises InvalidMechanism if the integration fails, or if the first sample after the start is inaccurate.
     """
-
     single_run = Lagrange(tolerance=judge.tolerance, compiled=judge.compiled)
 
     def by_multipliers(other: Mechanism) -> Trajectory:
@@ -125,18 +125,16 @@ def reference_motion(
         motion = single_run.build(other, spacing)(samples, 1)
         return motion if np.isfinite(motion.pose).all() else judge.build(other, spacing)(samples, 1)
 
-    run: Callable[[Mechanism], Trajectory] = by_multipliers
+    run: Method = by_multipliers
     motion, looser = judge.build(mechanism, spacing)(samples, 1), None
     accurate = _is_accurate(mechanism, motion, tolerance)
     if not accurate.all() and has_one_freedom(mechanism):
-        along, beside = (
-            motion_along_curve(mechanism, motion.t, size) for size in (ALONG_CURVE_TOLERANCE, LOOSER_CURVE_TOLERANCE)
-        )
+        along, beside = (motion_along_curve(mechanism, motion.t, size) for size in CURVE_TOLERANCES)
         along = replace(along, estimate=np.abs(along.pose - beside.pose))
         accurate_along = _is_accurate(mechanism, along, tolerance)
         if accurate_along.all():
             motion, looser, accurate = along, beside, accurate_along
-            run = partial(motion_along_curve, t=motion.t, tolerance=ALONG_CURVE_TOLERANCE)
+            run = partial(motion_along_curve, t=motion.t, tolerance=CURVE_TOLERANCES[0])
     sound = np.isfinite(motion.pose).all(axis=(1, 2))
     if not sound.all():
         raise InvalidMechanism(
@@ -153,9 +151,8 @@ def reference_motion(
     looser = looser or replace(LOOSER_JUDGE, compiled=judge.compiled).build(mechanism, spacing)(samples, 1)
     growths = [_growth(mechanism, motion, looser, run, *disturbance) for disturbance in DISTURBANCES]
     expected = EXPONENTIAL_GROWTH * (1 + motion.t / mechanism.time_scale)
-    begins = [
-        _first_exponential(growth, expected, size) for growth, (_, size) in zip(growths, DISTURBANCES, strict=True)
-    ]
+    sizes = [size for _, size in DISTURBANCES]
+    begins = [_first_exponential(growth, expected, size) for growth, size in zip(growths, sizes, strict=True)]
     parts = all(begin < len(motion.t) for begin in begins) and not has_one_freedom(mechanism)
     horizon = float(motion.t[min(begins) if parts else -1])
     return IdealMotion(motion, looser, np.max(growths, axis=0), horizon)
@@ -188,12 +185,7 @@ def pose_distance(mechanism: Mechanism, pose: Array, other: Array) -> Array:
 
 
 def _growth(
-    mechanism: Mechanism,
-    motion: Trajectory,
-    looser: Trajectory,
-    run: Callable[[Mechanism], Trajectory],
-    seed: int,
-    nudge: float,
+    mechanism: Mechanism, motion: Trajectory, looser: Trajectory, run: Method, seed: int, nudge: float
 ) -> Array:
     """Growth factor (times,) of a random initial disturbance, or 1 if the reference's error can explain the growth."""
     dynamics, random = Dynamics(mechanism), np.random.default_rng(seed)
@@ -223,8 +215,7 @@ def _growth(
 
 
 START_AGREEMENT = 1e-6  # Largest difference of initial accelerations, relative to the largest acceleration.
-# Speeds and forces below this share of the mechanism's speed or largest force count as zero.
-ZERO_SHARE = 1e-9
+ZERO_SHARE = 1e-9  # Smaller speeds and forces, relative to the mechanism's speed or largest force, count as zero.
 ERROR_UNITS = {"angle": "rad", "position": "m", "reaction": "of the largest", "energy": "of the largest kinetic"}
 
 
@@ -270,8 +261,7 @@ def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jum
     if jumps:
         reaction[:2], drift[:2] = np.nan, np.nan
     of = {"angle": angle, "position": position, "reaction": reaction, "energy": drift}
-    finished = bool(np.isfinite(run.pose).all())
-    return Errors(run.t, of, pose_distance(mechanism, run.pose, truth.pose), finished)
+    return Errors(run.t, of, pose_distance(mechanism, run.pose, truth.pose), bool(np.isfinite(run.pose).all()))
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
