@@ -134,19 +134,13 @@ class _Case:
 
     @cached_property
     def size(self) -> float:
-        """The largest displacement [m], with joints or without them.
-
-        The lower bound keeps rounding below ERROR_FLOORS.
-        """
+        """The largest displacement [m] with or without joints, but so large that rounding is below ERROR_FLOORS."""
         mechanism, arm = self.mechanism, np.array([1.0, 1.0, self.mechanism.length_scale])
         moved = float(np.abs((self.truth.pose - mechanism.pose) * arm).max())
         pulled = float(np.abs(mechanism.unconstrained(mechanism.pose, mechanism.twist) * arm).max())
         far = max(mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
-        return max(
-            moved,
-            pulled * (MOTION_SPAN * mechanism.time_scale) ** 2 / 2,
-            NOISE_MARGIN * np.finfo(float).eps * far / ERROR_FLOORS["motion"],
-        )
+        rounding = NOISE_MARGIN * np.finfo(float).eps * far / ERROR_FLOORS["motion"]
+        return max(moved, pulled * (MOTION_SPAN * mechanism.time_scale) ** 2 / 2, rounding)
 
     @cached_property
     def forces(self) -> tuple[Array, ...]:

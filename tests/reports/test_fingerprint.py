@@ -1,8 +1,10 @@
-"""Tests of cache keys: a result is stale if its source files or the versions of its packages have changed."""
+"""Tests of versions and cache keys: a result is stale if its source files or its packages have changed."""
 
 from __future__ import annotations
 
 import importlib
+import os
+import platform
 import sys
 from dataclasses import dataclass, replace
 from importlib import metadata
@@ -10,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from engines.lagrange import loading
 from engines.pymunk import DEFAULT
 from engines.registry import VARIANTS
 from reports.gate.change import Altered, Nudge
@@ -17,6 +20,9 @@ from reports.model import fingerprint
 from reports.model.cells import Cell
 from reports.model.fingerprint import MEASURING, OURS, versions_of
 from reports.model.tasks import Motion
+from reports.pages.index import foot
+from reports.write import provenance
+from reports.write.provenance import machine, still_installed, versions
 from tests.toys import Disc, Toy
 
 LAGRANGE = next(engine for engine in VARIANTS if engine.name == "lagrange")
@@ -158,3 +164,40 @@ def test_a_release_under_another_distribution_name_changes_the_key_of_rows(monke
     forget()
     assert "pytest" in versions_of(Disc(), DEFAULT)
     assert fingerprint._rivals(["nothing"]) == set()
+
+
+@pytest.fixture
+def other_versions(monkeypatch):
+    """`monkeypatch`, with the caches of versions cleared before and after the test."""
+    provenance._version.cache_clear()
+    yield monkeypatch
+    provenance._version.cache_clear()
+
+
+def test_versions_are_those_of_the_named_packages(other_versions):
+    numbers = {"numpy": "1.1", "scipy": "2.2", "pymunk": "3.3"}
+
+    def version(name):
+        if name not in numbers:
+            raise metadata.PackageNotFoundError(name)
+        return numbers[name]
+
+    other_versions.setattr(metadata, "version", version)
+    other_versions.setattr(platform, "python_version", lambda: "3.99")
+    compiled = ", numba not installed" if loading.installed() else ""
+    assert versions() == f"Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed{compiled}"
+    assert still_installed("Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed")
+    assert not still_installed("Python 3.99, scipy 2.3")
+    assert still_installed("Python 3.99.2, scipy 2.2")
+    assert not still_installed("Python 3.98, scipy 2.2")
+    assert not still_installed("Python 3.99, scipy 2.2, another 1.0")
+    assert foot("a command") == f"Made by `a command` with {versions()}; timings on {machine()}."
+
+
+def test_the_description_of_a_machine_has_no_host_name_and_no_path(monkeypatch):
+    monkeypatch.setattr(os, "cpu_count", lambda: 97)
+    monkeypatch.setattr(platform, "machine", lambda: "an architecture")
+    reported = machine()
+    assert reported.startswith("an architecture, 97 processors, ")
+    assert platform.node() not in reported
+    assert "/" not in reported.replace("w/", "")

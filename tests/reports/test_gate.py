@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import permutations
 from typing import Any
 
 import pytest
 
 from engines import EXACT, ConvergenceOrder, NotDeclared, Regularisation
+from reference.scenes.four_bar.scenes import FreeFourBar
 from reports.gate.change import Baseline
-from reports.gate.prediction import Prediction
+from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS, Prediction, declared_error, soft_tasks
 from reports.gate.pytest_plugin import lines, report
 from reports.gate.theory import ROOM, ROOM_OWN, TOO_FEW, Case, cases, checks, count_vacuous, order, theory
 from reports.gate.walk import CaseVerdict
@@ -21,7 +22,8 @@ from reports.model.measure import Measurement, blank, measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import QUANTITIES
-from tests.toys import Disc, Toy
+from reports.model.tasks import Answer, Task, answered
+from tests.toys import Disc, Plain, Toy
 
 SCENE = Disc()
 # The judge's errors are 1e-4 with the second order and 1e-8 with the fourth order at a step of 1e-2 s.
@@ -307,3 +309,30 @@ def test_the_report_has_the_bound_of_every_case_and_its_failed_checks():
     assert "3 checks of theory; 1 of them can't fail." in report(
         [good, verdict(*order(ConvergenceOrder(2), ()))], Baseline({})
     )
+
+
+@dataclass(frozen=True)
+class SoftToy(Plain):
+    name: str = "toy"
+    variant: str = "soft"
+    share: float = COMPLIANCE
+
+    def build(self, mechanism, dt):
+        raise NotImplementedError
+
+    def regularisation(self, mechanism, dt):
+        return Regularisation(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
+
+
+def test_the_declared_error_is_proportional_to_the_compliance():
+    scene, engine = FreeFourBar(duration=0.1), SoftToy()
+    (task,) = soft_tasks(scene, (engine,))
+    answers: dict[Task, Answer] = {task: answered(task)}
+    angle_error = answers[task].number("angle")
+    assert angle_error > 0
+    assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(angle_error)
+    softer = replace(engine, share=3 * COMPLIANCE)
+    assert declared_error(answers, scene, softer, "angle", 1e-3) == pytest.approx(3 * angle_error)
+    assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
+    assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
+    assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0

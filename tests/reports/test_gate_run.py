@@ -13,6 +13,7 @@ from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.gate import grid_tests
 from reports.gate.judge import integrate
 from reports.gate.prediction import prediction
+from reports.gate.pytest_plugin import _engines
 from reports.gate.theory import Case, checks, kinds
 from reports.gate.walk import JudgeRun, run_judge
 from reports.model.checks import Check
@@ -185,3 +186,17 @@ def test_a_right_engine_passes_under_another_name(name: str) -> None:
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_wrong_engine_fails_unless_the_mistake_is_below_the_methods_own_error(name: str, mistake: str) -> None:
     assert bool(found(name, mistake)) is ((name, mistake) not in UNSEEN), UNSEEN.get((name, mistake))
+
+
+def test_engines_of_the_gate_are_names_or_references(tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.path", [*__import__("sys").path])
+    assert _engines(["pymunk", "mujoco tuned"]) == ((), ("pymunk", "mujoco tuned"))
+    (tmp_path / "own_toy.py").write_text("from tests.toys import Toy\nOWN = (Toy('a'), Toy('b'))\n")
+    result = _engines([f"{tmp_path}/own_toy.py:OWN", "engines.pymunk:TUNED"])
+    assert [engine.variant for engine in result[0]] == ["a", "b", "tuned"]
+    assert result[1] == ("toy a", "toy b", "pymunk tuned")
+    (tmp_path / "another.py").write_text("from tests.toys import Toy\nOTHER = Toy('tuned', name='pymunk')\n")
+    with pytest.raises(pytest.UsageError, match="another engine is called 'pymunk tuned'; give it another name"):
+        _engines([f"{tmp_path}/another.py"])
+    with pytest.raises(pytest.UsageError, match="there is no such file"):
+        _engines([f"{tmp_path}/missing.py"])

@@ -25,7 +25,6 @@ from reports.check.pictures import PictureData, Pose
 from reports.cli.report import drawn, material_of
 from reports.cli.selection import shown_cells
 from reports.gate.prediction import all_tasks
-from reports.gate.pytest_plugin import _engines
 from reports.model.catalogue import PAGES, _without_doubles, generic_page, with_scenes
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, blank, measure
@@ -49,8 +48,8 @@ from reports.pages.your_model.page import ModelCheck
 from reports.plots import theme
 from reports.run.store import Store
 from reports.write.experiments import observe
-from reports.write.templates import anchor, environment, headings
-from reports.write.unmeasured import FILTERS, NOT_MEASURED, UNKNOWN_MARK, UNMEASURED, MissingAsNaN, without_marks
+from reports.write.templates import anchor, headings
+from reports.write.unmeasured import FILTERS, NOT_MEASURED, UNKNOWN_MARK
 from tests import ROOT
 from tests.committed_rows import RESULTS, answer_to, page_rows
 from tests.toys import Disc, Toy
@@ -188,33 +187,6 @@ def test_no_clause_is_left_out_if_all_rows_are_there(page, undrawn, monkeypatch)
     assert vanished == []
 
 
-@pytest.mark.parametrize(
-    ("template", "said"),
-    [
-        ("{{ row.angle | number }}", NOT_MEASURED),
-        ("{{ (1e3 * row.step / row.other.step) | number }}", NOT_MEASURED),
-        ("{{ row }} {{ unknown }} {{ nothing }}", f"{NOT_MEASURED} {NOT_MEASURED} {NOT_MEASURED}"),
-        ("{% if row %}run{% else %}not run{% endif %}", "not run"),
-        ("a{% filter if_measured %}: {{ row.angle | number }} rad{% endfilter %}.", "a."),
-        (
-            "a{% filter if_measured %}: 1{% filter if_measured %}, {{ row }}{% endfilter %}{% endfilter %}.",
-            "a: 1.",
-        ),
-        ("a\n![A chart]({{ pictures.chart }})\nb", "a\nb"),
-        ("a\n![A chart]({{ pictures.drawn }})\nb", "a\n![A chart](drawn.svg)\nb"),
-    ],
-)
-def test_a_missing_number_is_marked_and_removes_its_clause(template, said):
-    options = {
-        "row": UNMEASURED,
-        "rows": MissingAsNaN(),
-        "unknown": math.nan,
-        "nothing": None,
-        "pictures": MissingAsNaN(drawn="drawn.svg"),
-    }
-    assert without_marks(environment().from_string(template).render(options)) == said
-
-
 # Data of a check in which no setting is accurate enough and one run has failed.
 STILL = Pose([[[0.0, 0.0], [1.0, 0.0]]], [], [])
 ERRORS = {"angle": [0.0, 1e-3]}
@@ -350,20 +322,6 @@ def test_no_two_pages_have_the_same_file_name_and_none_has_that_of_the_index():
         "crosscheck.pages: the page 'x'",
         "crosscheck.pages: the page 'index'",
     ]
-
-
-def test_engines_of_the_gate_are_names_or_references(tmp_path, monkeypatch):
-    monkeypatch.setattr("sys.path", [*__import__("sys").path])
-    assert _engines(["pymunk", "mujoco tuned"]) == ((), ("pymunk", "mujoco tuned"))
-    (tmp_path / "own_toy.py").write_text("from tests.toys import Toy\nOWN = (Toy('a'), Toy('b'))\n")
-    result = _engines([f"{tmp_path}/own_toy.py:OWN", "engines.pymunk:TUNED"])
-    assert [engine.variant for engine in result[0]] == ["a", "b", "tuned"]
-    assert result[1] == ("toy a", "toy b", "pymunk tuned")
-    (tmp_path / "another.py").write_text("from tests.toys import Toy\nOTHER = Toy('tuned', name='pymunk')\n")
-    with pytest.raises(pytest.UsageError, match="another engine is called 'pymunk tuned'; give it another name"):
-        _engines([f"{tmp_path}/another.py"])
-    with pytest.raises(pytest.UsageError, match="there is no such file"):
-        _engines([f"{tmp_path}/missing.py"])
 
 
 def test_pages_rendered_by_workers_equal_pages_of_one_process(tmp_path: Path) -> None:

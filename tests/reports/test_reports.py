@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import platform
 import re
 import xml.etree.ElementTree as xml
@@ -29,8 +30,8 @@ from reports.pages.your_loop.page import FRESH, PASTED_CELLS
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.plots.theme import DARK
 from reports.write.rows import lookups
-from reports.write.templates import marks
-from reports.write.unmeasured import UNMEASURED
+from reports.write.templates import environment, marks
+from reports.write.unmeasured import NOT_MEASURED, UNMEASURED, MissingAsNaN, without_marks
 from tests.rows import falling, row_of, table
 from tests.toys import FAILURES, Disc, FailingToy, Toy
 
@@ -214,3 +215,30 @@ def test_the_animation_of_the_readme_is_small_and_respects_reduced_motion():
     # Three bars move in the exact motion and in the motion of each method in MOVING_METHODS.
     assert len(re.findall(r"@keyframes m\d+b\d+\{", moving_part)) == 3 * (len(MOVING_METHODS) + 1)
     assert moving_picture([Material({}, dict(list(answers.items())[1:]))]) == {}
+
+
+@pytest.mark.parametrize(
+    ("template", "said"),
+    [
+        ("{{ row.angle | number }}", NOT_MEASURED),
+        ("{{ (1e3 * row.step / row.other.step) | number }}", NOT_MEASURED),
+        ("{{ row }} {{ unknown }} {{ nothing }}", f"{NOT_MEASURED} {NOT_MEASURED} {NOT_MEASURED}"),
+        ("{% if row %}run{% else %}not run{% endif %}", "not run"),
+        ("a{% filter if_measured %}: {{ row.angle | number }} rad{% endfilter %}.", "a."),
+        (
+            "a{% filter if_measured %}: 1{% filter if_measured %}, {{ row }}{% endfilter %}{% endfilter %}.",
+            "a: 1.",
+        ),
+        ("a\n![A chart]({{ pictures.chart }})\nb", "a\nb"),
+        ("a\n![A chart]({{ pictures.drawn }})\nb", "a\n![A chart](drawn.svg)\nb"),
+    ],
+)
+def test_a_missing_number_is_marked_and_removes_its_clause(template, said):
+    options = {
+        "row": UNMEASURED,
+        "rows": MissingAsNaN(),
+        "unknown": math.nan,
+        "nothing": None,
+        "pictures": MissingAsNaN(drawn="drawn.svg"),
+    }
+    assert without_marks(environment().from_string(template).render(options)) == said

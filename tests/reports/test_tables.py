@@ -7,43 +7,34 @@ from __future__ import annotations
 
 import hashlib
 import math
-import os
-import platform
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from importlib import metadata
 from typing import Any
 
 import pytest
 
-from engines import Enforcement, Regularisation, mujoco, pymunk
+from engines import Enforcement, mujoco, pymunk
 from engines.capability import Capability, Lack
-from engines.lagrange import loading
 from engines.pymunk.methods import SKATE_POINT
 from engines.registry import OTHERS
 from reference.joints import Joint, Pin
 from reference.mechanism import Mechanism
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.scenes import FreeFourBar
-from reports.gate.prediction import COMPLIANCE, DAMPING, STIFFNESS, declared_error, soft_tasks
 from reports.model.cells import Cell
 from reports.model.convergence import Sweep, Verdict
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
 from reports.model.quantities import quantity
-from reports.model.tasks import Answer, Task, answered
-from reports.pages.index import foot
 from reports.pages.skate.page import PAGE as SKATE
 from reports.write import columns as engine_tables
-from reports.write import csv_files, provenance, tables
+from reports.write import csv_files, tables
 from reports.write.columns import Column
 from reports.write.experiments import render_experiment, without_incomparable_errors
 from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
-from reports.write.provenance import machine, still_installed, versions
 from tests.present import present
 from tests.rows import falling, row, row_of, table
-from tests.toys import Disc, Plain, Toy
+from tests.toys import Disc, Toy
 
 NAN = math.nan
 # Steps of the rows from `falling`, instead of the steps that people use.
@@ -231,43 +222,6 @@ def test_two_rows_for_one_cell_are_refused():
         tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
 
 
-@pytest.fixture
-def other_versions(monkeypatch):
-    """`monkeypatch`, with the caches of versions cleared before and after the test."""
-    provenance._version.cache_clear()
-    yield monkeypatch
-    provenance._version.cache_clear()
-
-
-def test_versions_are_those_of_the_named_packages(other_versions):
-    numbers = {"numpy": "1.1", "scipy": "2.2", "pymunk": "3.3"}
-
-    def version(name):
-        if name not in numbers:
-            raise metadata.PackageNotFoundError(name)
-        return numbers[name]
-
-    other_versions.setattr(metadata, "version", version)
-    other_versions.setattr(platform, "python_version", lambda: "3.99")
-    compiled = ", numba not installed" if loading.installed() else ""
-    assert versions() == f"Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed{compiled}"
-    assert still_installed("Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed")
-    assert not still_installed("Python 3.99, scipy 2.3")
-    assert still_installed("Python 3.99.2, scipy 2.2")
-    assert not still_installed("Python 3.98, scipy 2.2")
-    assert not still_installed("Python 3.99, scipy 2.2, another 1.0")
-    assert foot("a command") == f"Made by `a command` with {versions()}; timings on {machine()}."
-
-
-def test_the_description_of_a_machine_has_no_host_name_and_no_path(monkeypatch):
-    monkeypatch.setattr(os, "cpu_count", lambda: 97)
-    monkeypatch.setattr(platform, "machine", lambda: "an architecture")
-    reported = machine()
-    assert reported.startswith("an architecture, 97 processors, ")
-    assert platform.node() not in reported
-    assert "/" not in reported.replace("w/", "")
-
-
 COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (
     ("default", "engine", Column.SHIPPED),
     ("default", "ours", Column.NAIVE),
@@ -365,30 +319,3 @@ def test_an_experiment_without_comparable_samples_has_no_errors():
     experiment = render_experiment(Failure("T", "E", (cell,)), Material({cell: row}))
     assert "- rad" in experiment.grid
     assert "0 rad" not in experiment.grid
-
-
-@dataclass(frozen=True)
-class SoftToy(Plain):
-    name: str = "toy"
-    variant: str = "soft"
-    share: float = COMPLIANCE
-
-    def build(self, mechanism, dt):
-        raise NotImplementedError
-
-    def regularisation(self, mechanism, dt):
-        return Regularisation(STIFFNESS, DAMPING, self.share, (True,) * mechanism.row_count)
-
-
-def test_the_declared_error_is_proportional_to_the_compliance():
-    scene, engine = FreeFourBar(duration=0.1), SoftToy()
-    (task,) = soft_tasks(scene, (engine,))
-    answers: dict[Task, Answer] = {task: answered(task)}
-    angle_error = answers[task].number("angle")
-    assert angle_error > 0
-    assert declared_error(answers, scene, engine, "angle", 1e-3) == pytest.approx(angle_error)
-    softer = replace(engine, share=3 * COMPLIANCE)
-    assert declared_error(answers, scene, softer, "angle", 1e-3) == pytest.approx(3 * angle_error)
-    assert math.isnan(declared_error({}, scene, engine, "angle", 1e-3))
-    assert math.isnan(declared_error({task: Answer(Outcome.ABORTED)}, scene, engine, "angle", 1e-3))
-    assert declared_error({}, scene, Toy(), "angle", 1e-3) == 0
