@@ -5,21 +5,16 @@ Tests of an engine that is not installed are skipped with the name of its extra.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 from engines import EXACT, ConvergenceOrder, Engine, Unsupported, method_name, mujoco, pymunk, registry
-from engines.lagrange import TRUTH, Lagrange
-from engines.mujoco.model import MUJOCO_CAPABILITY
-from engines.mujoco.writers import MJCF, URDF
-from engines.pymunk.model import PYMUNK_CAPABILITY
-from engines.pymunk.written_script import SCRIPT
-from engines.single_run import ExtraEngine
-from reference.forces import FORCES, Force, Torque, TorsionSpring
-from reference.joints import JOINTS, Drive, Gear, Pin, Slot
+from engines.lagrange import TRUTH
+from reference.forces import Force, Torque, TorsionSpring
+from reference.joints import Drive, Gear, Pin, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES, scene
 from reports.model.cells import SLOW_TO_BUILD
@@ -28,8 +23,7 @@ from tests.reference.test_units import in_other_units
 
 QUICKLY = tuple(engine for engine in registry.OTHERS if engine.build_time < SLOW_TO_BUILD)
 ENGINES = (*registry.ENGINES, *QUICKLY)
-DEFAULTS = tuple(engine for engine in QUICKLY if engine.variant == "default")
-FURTHER = tuple(engine for engine in QUICKLY if engine not in DEFAULTS)
+FURTHER = tuple(engine for engine in QUICKLY if engine.variant != "default")
 
 
 def installed(engine: Engine) -> Engine:
@@ -226,76 +220,3 @@ def test_methods_do_not_depend_on_units_of_length_and_mass(engine: Engine, name:
             in_units(engine, name, length, mass), linkage, (1e-9, 1e-9, 1e-6), strict=True
         ):
             assert np.abs(changed - right).max() < allowed * max(1.0, np.abs(right).max())
-
-
-@dataclass(frozen=True)
-class Belt(Gear):
-    """A joint that no adapter knows, for two rotations with the ratio of two pulleys."""
-
-
-@dataclass(frozen=True)
-class Brake(Torque):
-    """A smoothed Coulomb torque, which is a force element that no adapter knows."""
-
-    def on(self, first, second, first_twist, second_twist):
-        rate = second_twist[..., 2] - first_twist[..., 2]
-        return -super().on(first, second, first_twist, second_twist) * np.tanh(rate / 0.1)[..., None]
-
-
-PLATES = (
-    Body("a", 2.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0)),
-    Body("b", 1.0, 0.1, (1.0, 0.0, 0.0), (0.0, 0.0, 4.0)),
-)
-PINS = (Pin("A", None, "a", (0.0, 0.0), (0.0, 0.0)), Pin("B", None, "b", (1.0, 0.0), (0.0, 0.0)))
-WITH_BELT = Mechanism(PLATES, (*PINS, Belt("belt", "a", "b", 2.0)), (0.0, 0.0))
-WITH_BRAKE = Mechanism(PLATES, PINS, (0.0, 0.0), (Brake("brake", None, "a", 0.2),))
-EVERY_ENGINE = (*registry.ENGINES, *registry.OTHERS)
-OURS = ("lagrange", "box2d", "bullet", "pinocchio", "drake")  # These engines use the law of a force element.
-
-
-REFUSED = [(engine, WITH_BELT, "Belt") for engine in EVERY_ENGINE if engine.name != "lagrange"]
-REFUSED += [(engine, WITH_BRAKE, "Brake") for engine in EVERY_ENGINE if engine.name not in OURS]
-
-
-@pytest.mark.parametrize(("engine", "mechanism", "named"), REFUSED, ids=lambda value: getattr(value, "variant", None))
-def test_an_adapter_refuses_an_unknown_element_by_name(engine, mechanism, named):
-    if engine.missing:
-        pytest.skip(engine.missing)
-    with pytest.raises(Unsupported, match=named):
-        engine.build(mechanism, 0.01)
-
-
-CAPABILITIES = [
-    MUJOCO_CAPABILITY,
-    PYMUNK_CAPABILITY,
-    *(engine.capability for engine in DEFAULTS if isinstance(engine, ExtraEngine)),
-]
-
-
-@pytest.mark.parametrize("capability", CAPABILITIES, ids=lambda capability: capability.engine)
-def test_a_table_of_constructions_has_known_classes_and_no_reason_against_them(capability):
-    assert {*capability.joints} <= {*JOINTS}
-    assert {*(capability.forces or ())} <= {*FORCES}
-    assert {*capability.lacks} <= {*JOINTS, *FORCES} - {*capability.joints} - {*(capability.forces or ())}
-
-
-@pytest.mark.parametrize("writer", [MJCF, URDF, SCRIPT], ids=lambda writer: type(writer).__name__)
-def test_exports_refuse_unknown_elements(writer):
-    for mechanism in (WITH_BELT, WITH_BRAKE):
-        with pytest.raises(Unsupported):
-            writer.write(mechanism, 0.01, "default")
-
-
-@pytest.mark.parametrize("name", OURS)
-def test_engines_that_evaluate_force_elements_accept_an_unknown_law(name):
-    engine = next(engine for engine in EVERY_ENGINE if engine.name == name)
-    if engine.missing:
-        pytest.skip(engine.missing)
-    run = engine.build(WITH_BRAKE, 1e-3)(10, 50)
-    # A torque of 0.2 N m acts on 0.1 kg m^2 for 0.5 s. The tanh differs from 1 by 2e-9 at more than 1 rad/s.
-    assert run.twist[-1, 0, 2] == pytest.approx(1.0, abs=2e-4)
-
-
-def test_compiled_code_is_not_used_for_an_unknown_joint():
-    run = Lagrange().build(WITH_BELT, 1e-3)(10, 50)
-    assert run.twist[-1, :, 2] == pytest.approx([2.0, 4.0], abs=1e-12)

@@ -1,4 +1,4 @@
-"""Tests with a joint and a force element that only the vocabulary knows. Other code refuses these elements by name."""
+"""Tests with joints and force elements that only the vocabulary knows. Other code refuses these elements by name."""
 
 from __future__ import annotations
 
@@ -12,16 +12,18 @@ import reference.mechanism
 from engines import Unsupported, method_name, registry
 from engines.capability import Capability
 from engines.conformance.same import Isometry, joints_swapped
+from engines.lagrange import TRUTH
 from engines.mujoco.writers import MJCF, URDF
 from engines.pymunk.written_script import SCRIPT
 from reference import checks
 from reference.elements import BetweenTwo, JointElement
-from reference.forces import ForceElement, ForceFacts
-from reference.joints import Body, Joint, Pin
+from reference.forces import FORCES, ForceElement, ForceFacts, Torque
+from reference.joints import JOINTS, Body, Gear, Joint, Pin
 from reference.mechanism import Mechanism
 from reports.search import relations
 from reports.search.law import CheckSkipped
 from reports.search.parts import Recipe, RecipeBody
+from tests.engines.test_promised import QUICKLY, installed
 
 
 @dataclass(frozen=True)
@@ -64,78 +66,98 @@ class Friction(BetweenTwo, ForceFacts):
         return np.zeros_like(first[..., 2] + second[..., 2])
 
 
+@dataclass(frozen=True)
+class Belt(Gear):
+    """A subclass of a joint that the adapters build."""
+
+
+@dataclass(frozen=True)
+class Brake(Torque):
+    """A subclass of a force element that the adapters build, with the law of `Friction`."""
+
+    def on(self, first, second, first_twist, second_twist):
+        rate = second_twist[..., 2] - first_twist[..., 2]
+        return -super().on(first, second, first_twist, second_twist) * np.tanh(rate / 0.1)[..., None]
+
+
 WHEEL = Body("wheel", 2.0, 0.1, (0.0, 0.0, 0.0), (0.0, 0.0, 2.0))
-SLEDGE = Body("sledge", 1.0, 0.1, (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
+SLEDGE = Body("sledge", 1.0, 0.1, (0.0, 1.0, 0.0), (1.0, 0.0, 4.0))
 AXLE = Pin("axle", None, "wheel", (0.0, 0.0), (0.0, 0.0))
-ENGINES = tuple({engine.name: engine for engine in (*registry.VARIANTS, *registry.OTHERS)}.values())
+RACK, BELT = Rack("rack", "wheel", "sledge"), Belt("belt", "wheel", "sledge", 2.0)
+FRICTION, BRAKE = Friction("brake", None, "wheel"), Brake("brake", None, "wheel", 0.2)
+ELEMENTS = (RACK, BELT, FRICTION, BRAKE)
+ENGINES = (*registry.ENGINES, *registry.OTHERS)
+CAPABILITIES = {engine.name: engine.capability for engine in ENGINES if engine.capability}
 # These engines evaluate the law of a force element.
-FORCES_BY_LAW = {engine.name for engine in ENGINES if engine.capability and engine.capability.forces is None}
+BY_LAW = {"lagrange", *(name for name, capability in CAPABILITIES.items() if capability.forces is None)}
 
 
-@pytest.fixture
-def with_rack(monkeypatch):
-    _widen(monkeypatch, "Joint", Joint | Rack)
-    rack: Any = Rack("rack", "wheel", "sledge")  # The type checker does not know this joint.
-    yield Mechanism((WHEEL, SLEDGE), (AXLE, rack), (0.0, 0.0))
+@pytest.fixture(autouse=True)
+def _wider_vocabulary(monkeypatch):
+    monkeypatch.setattr(reference.mechanism, "Joint", Joint | Rack)
+    monkeypatch.setattr(reference.mechanism, "ForceElement", ForceElement | Friction)
+    checks._validators_of_fields.cache_clear()
+    yield
     checks._validators_of_fields.cache_clear()
 
 
-@pytest.fixture
-def with_friction(monkeypatch):
-    _widen(monkeypatch, "ForceElement", ForceElement | Friction)
-    friction: Any = Friction("brake", None, "wheel")
-    yield Mechanism((WHEEL,), (AXLE,), (0.0, 0.0), (friction,))
-    checks._validators_of_fields.cache_clear()
+def mechanism_with(element: Any) -> Mechanism:
+    if isinstance(element, JointElement):
+        return Mechanism((WHEEL, SLEDGE), (AXLE, element), (0.0, 0.0))
+    return Mechanism((WHEEL,), (AXLE,), (0.0, 0.0), (element,))
 
 
-def _widen(monkeypatch, name, union):
-    monkeypatch.setattr(reference.mechanism, name, union)
-    checks._validators_of_fields.cache_clear()
+@pytest.mark.parametrize("engine", [engine for engine in ENGINES if engine.name != "lagrange"], ids=method_name)
+def test_an_engine_refuses_an_unknown_element_by_its_table(engine):
+    for element in ELEMENTS[:2] if engine.name in BY_LAW else ELEMENTS:
+        with pytest.raises(Unsupported) as refusal:
+            engine.build(mechanism_with(element), 0.01)
+        assert (refusal.value.engine, refusal.value.kind) == (engine.name, type(element).__name__)
+        assert type(element).__name__ in str(refusal.value)
 
 
-@pytest.mark.parametrize("engine", ENGINES, ids=method_name)
-def test_an_engine_refuses_an_unknown_element_by_its_table(engine, with_rack, with_friction):
-    if engine.capability is None:
-        assert engine.name == "lagrange"
-        return
-    for mechanism, kind in ((with_rack, "Rack"), (with_friction, "Friction")):
-        if kind == "Friction" and engine.name in FORCES_BY_LAW:
-            continue
-        with pytest.raises(Unsupported, match=kind) as refusal:
-            engine.build(mechanism, 0.01)
-        assert (refusal.value.engine, refusal.value.kind) == (engine.name, kind)
-
-
-def test_the_judge_moves_unknown_elements_by_their_own_rows_and_law(with_rack, with_friction):
-    judge = next(engine for engine in ENGINES if engine.name == "lagrange")
-    twist = judge.build(with_rack, 1e-3)(10, 50).twist
+def test_the_judge_moves_an_unknown_joint_by_its_own_rows():
+    twist = TRUTH.build(mechanism_with(RACK), 1e-3)(10, 50).twist
     assert twist[-1, 1, 0] == pytest.approx(0.5 * twist[-1, 0, 2], abs=1e-9)
-    # The tanh differs from 1 by 2e-9 if the wheel is faster than 1 rad/s.
-    rate = judge.build(with_friction, 1e-3)(10, 50).twist[-1, 0, 2]
-    assert rate == pytest.approx(2.0 - 0.2 / 0.1 * 0.5, abs=2e-3)
+
+
+@pytest.mark.parametrize("name", sorted({engine.name for engine in (*registry.ENGINES, *QUICKLY)} & BY_LAW))
+def test_an_engine_that_evaluates_force_elements_uses_an_unknown_law(name):
+    engine = installed(next(engine for engine in ENGINES if engine.name == name))
+    for element in (FRICTION, BRAKE):
+        run = engine.build(mechanism_with(element), 1e-3)(10, 50)
+        # A torque of 0.2 N m acts on 0.1 kg m^2 for 0.5 s. The tanh differs from 1 by 2e-9 at more than 1 rad/s.
+        assert run.twist[-1, 0, 2] == pytest.approx(1.0, abs=2e-4)
 
 
 @pytest.mark.parametrize("writer", [MJCF, URDF, SCRIPT], ids=lambda writer: type(writer).__name__)
-def test_a_writer_refuses_an_unknown_element_by_name(writer, with_rack, with_friction):
-    for mechanism, kind in ((with_rack, "Rack"), (with_friction, "Friction")):
-        with pytest.raises(Unsupported, match=kind):
-            writer.write(mechanism, 0.01, "default")
+def test_a_writer_refuses_an_unknown_element_by_name(writer):
+    for element in ELEMENTS:
+        with pytest.raises(Unsupported, match=type(element).__name__):
+            writer.write(mechanism_with(element), 0.01, "default")
 
 
-def test_another_description_of_an_unknown_element_is_refused_by_name(with_rack, with_friction):
-    for mechanism, kind in ((with_rack, "Rack"), (with_friction, "Friction")):
-        with pytest.raises(ValueError, match=kind):
-            Isometry(turn=0.7)(mechanism)
+def test_another_description_of_an_unknown_element_is_refused_by_name():
+    for element in (RACK, FRICTION):
+        with pytest.raises(ValueError, match=type(element).__name__):
+            Isometry(turn=0.7)(mechanism_with(element))
     with pytest.raises(ValueError, match="Rack"):
-        joints_swapped(with_rack)
+        joints_swapped(mechanism_with(RACK))
 
 
-def test_a_relation_of_the_search_skips_an_unknown_element_by_name(with_rack):
+def test_a_relation_of_the_search_skips_an_unknown_element_by_name():
     recipe = Recipe((RecipeBody(), RecipeBody()), ())
     for name in ("turned", "mirrored"):
-        skipped = relations.describe_otherwise(recipe, with_rack, name)
+        skipped = relations.describe_otherwise(recipe, mechanism_with(RACK), name)
         assert isinstance(skipped, CheckSkipped)
         assert "Rack" in skipped.reason
+
+
+@pytest.mark.parametrize("capability", CAPABILITIES.values(), ids=CAPABILITIES)
+def test_a_table_of_constructions_has_known_classes_and_no_reason_against_them(capability):
+    assert {*capability.joints} <= {*JOINTS}
+    assert {*(capability.forces or ())} <= {*FORCES}
+    assert {*capability.lacks} <= {*JOINTS, *FORCES} - {*capability.joints} - {*(capability.forces or ())}
 
 
 def test_a_table_names_an_element_without_a_reason():
