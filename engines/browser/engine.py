@@ -79,12 +79,7 @@ def install() -> None:
     """Install the packages of all engines. Raises CalledProcessError, and FileNotFoundError without npm."""
     folder = npm_folder()
     folder.mkdir(parents=True, exist_ok=True)
-    packages = [
-        f"{package}@{engine.release}"
-        for engine in VARIANTS
-        if isinstance(engine, BrowserEngine)
-        for package in engine.packages
-    ]
+    packages = [f"{package}@{engine.release}" for engine in ENGINES for package in engine.packages]
     options = ["--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts", "--save-exact"]
     subprocess.run([shutil.which("npm") or "npm", "install", *options, *packages], check=True)
 

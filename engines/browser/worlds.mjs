@@ -7,12 +7,11 @@ import { pathToFileURL } from "node:url";
 const [folder, name] = process.argv.slice(2), settings = JSON.parse(process.argv[4]);
 const require = createRequire(pathToFileURL(`${folder}/`));
 const TORQUE = 1e30; // of motors [N m]: above what a mechanism needs, below the largest number of single precision
-
 const SPEED = 1e15; // Jolt's limit on speeds [m/s, rad/s], 500 and 47 as shipped: above those of a mechanism
 
 const vector = ([x, y]) => ({ x, y });
 const direction = (angle) => [Math.cos(angle), Math.sin(angle)];
-const ends = (worlds, joint) => [worlds.body(joint.first), worlds.body(joint.second)];
+const ends = (world, joint) => [joint.first, joint.second].map((index) => index < 0 ? world.ground : world.bodies[index]);
 
 class Planck {
   static load() { return require("planck"); }
@@ -48,7 +47,6 @@ class Planck {
     }
   }
 
-  body(index) { return index < 0 ? this.ground : this.bodies[index]; }
   step(dt) { this.world.step(dt, ...this.iterations); }
   pose(body) { const { x, y } = body.getPosition(); return [x, y, body.getAngle()]; }
   twist(body) { const { x, y } = body.getLinearVelocity(); return [x, y, body.getAngularVelocity()]; }
@@ -106,7 +104,6 @@ class P2 {
     this.world.setGlobalRelaxation(relaxation);
   }
 
-  body(index) { return index < 0 ? this.ground : this.bodies[index]; }
   step(dt) { this.world.step(dt); }
   pose(body) { return [body.position[0], body.position[1], body.angle]; }
   twist(body) { return [body.velocity[0], body.velocity[1], body.angularVelocity]; }
@@ -145,7 +142,6 @@ class Rapier {
     }
   }
 
-  body(index) { return index < 0 ? this.ground : this.bodies[index]; }
   step() { this.world.step(); }
   pose(body) { const { x, y } = body.translation(); return [x, y, body.rotation()]; }
   twist(body) { const { x, y } = body.linvel(); return [x, y, body.angvel()]; }
@@ -243,7 +239,6 @@ class Jolt {
 
   vector([x, y]) { return new this.jolt.Vec3(x, y, 0); }
   point([x, y]) { return new this.jolt.RVec3(x, y, 0); }
-  body(index) { return index < 0 ? this.ground : this.bodies[index]; }
   step(dt) { this.interface.Step(dt, 1); }
   pose(body) {
     const at = body.GetCenterOfMassPosition(), turn = body.GetRotation();
