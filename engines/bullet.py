@@ -36,7 +36,7 @@ from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled_with_differences
 from engines.single_run import ExtraEngine, Recorded, quiet
-from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_offset
+from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_ends
 from reference.checks import Count, Fraction, Name, validated
 from reference.joints import Drive, Gear, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -265,14 +265,9 @@ class BulletWorld:
 
     def _close(self, loop: Any) -> None:
         """Add the loop-closing constraint of a joint; points [m] are relative to the centres of mass."""
-        numbers = {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
-        ends = [
-            (
-                -1 if name is None else numbers[self.mechanism.body_index(name)],
-                [*world_offset(self.mechanism, name, point), 0.0],
-            )
-            for name, point in ((loop.first, loop.first_point), (loop.second, loop.second_point))
-        ]
+        numbers: dict[int | None, int] = {None: -1}
+        numbers |= {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
+        ends = [(numbers[body], [*offset, 0.0]) for body, offset in world_ends(self.mechanism, loop)]
         ends.sort(key=lambda end: end[0] < 0)  # the engine accepts the ground only as the second body
         (first, first_point), (second, second_point) = ends
         kind = getattr(self.bullet, BULLET_JOINTS[type(loop)])

@@ -47,7 +47,7 @@ from engines.extrapolated import Extrapolated
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled, sampled_with_differences
 from engines.single_run import ExtraEngine, Recorded
-from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_offset
+from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_ends
 from reference.checks import Name, Positive, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -245,11 +245,7 @@ class DrakePlant:
             (second, sign), (first, other) = (self._revolute(joint, None, name) for name in (joint.second, joint.first))
             self.plant.AddCouplerConstraint(second, first, joint.ratio * other / sign)
             return
-        ends = [
-            (self.bodies[None if name is None else self.mechanism.body_index(name)], [*at, 0.0])
-            for name, point in ((joint.first, joint.first_point), (joint.second, joint.second_point))
-            for at in (world_offset(self.mechanism, name, point),)
-        ]
+        ends = [(self.bodies[body], [*offset, 0.0]) for body, offset in world_ends(self.mechanism, joint)]
         if isinstance(joint, Rod):
             self.plant.AddDistanceConstraint(*ends[0], *ends[1], joint.length)
         elif isinstance(joint, Weld):

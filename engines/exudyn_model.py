@@ -109,8 +109,7 @@ class ExudynSystem:
         return self._marker(kind, bodyNumber=self.bodies[name], localPosition=self._vector(point))
 
     def _ends(self, pair: Any, rigid: bool = False) -> list[int]:
-        points = (pair.first, pair.first_point), (pair.second, pair.second_point)
-        return [self._point(name, point, rigid) for name, point in points]
+        return [self._point(name, point, rigid) for name, point in pair.points]
 
     def _rotations(self, *names: str | None) -> list[int]:
         angles = [(self.point_ground, 0) if name is None else (self.nodes[name], 2) for name in names]

@@ -186,7 +186,7 @@ class NewtonModel:
 
     def _add_joint(self, builder: Any, joint: Pin | Weld, parent: str | None) -> int:
         """Add a joint to its parent, which is the ground if the joint connects to the ground."""
-        ends = [(joint.first, joint.first_point), (joint.second, joint.second_point)]
+        ends = [*joint.points]
         if joint.second is None or (joint.first is not None and joint.first != parent):
             ends.reverse()
         places: list[tuple[int, tuple[float, float], float]] = []

@@ -39,7 +39,7 @@ from engines.contract import EXACT, ConvergenceOrder, Enforcement, NotDeclared, 
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled
 from engines.single_run import ExtraEngine, Recorded
-from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_offset
+from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_ends
 from reference.checks import Name, NonNegative, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
@@ -175,10 +175,8 @@ class PinocchioModel:
 
     def _loop(self, joint: Any) -> Any:
         ends: list[Any] = []
-        for name, point in ((joint.first, joint.first_point), (joint.second, joint.second_point)):
-            body = None if name is None else self.mechanism.body_index(name)
-            offset = np.array(world_offset(self.mechanism, name, point)) - self.anchors[body]
-            ends += [self.joints[body], self._placed(offset)]
+        for body, offset in world_ends(self.mechanism, joint):
+            ends += [self.joints[body], self._placed(np.array(offset) - self.anchors[body])]
         kind = getattr(self.pin.ContactType, PINOCCHIO_JOINTS[type(joint)])
         loop = self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
         if self.correction:

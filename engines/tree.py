@@ -319,6 +319,14 @@ def with_parents(
                     yield child, parent, joint
 
 
+def world_ends(mechanism: Mechanism, joint: Joint) -> list[tuple[int | None, tuple[float, float]]]:
+    """For each point of a joint: the index of its body, None for the ground, and the `world_offset`."""
+    return [
+        (None if name is None else mechanism.body_index(name), world_offset(mechanism, name, point))
+        for name, point in joint.points
+    ]
+
+
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:
     """The vector [m] from a body's centre of mass to a point of the body, in the world's axes at t = 0."""
     if name is None:

@@ -90,9 +90,7 @@ class Isometry:
                     case Slot() | Skate() | Rod():
                         pass
                     case _:
-                        raise ValueError(
-                            f"joint {joint.name!r}: no isometry of a {type(joint).__name__} is defined here"
-                        )
+                        raise _undefined("joint", joint)
                 row += joint.size
             return pose, twist, reaction
 
@@ -145,10 +143,8 @@ class Isometry:
         return (-angle if self.mirrored else angle) + self.turn * turned
 
     def _points(self, joint: Pin | Slot | Rod | Weld | Spring | Damper) -> dict[str, Any]:
-        points = {"first_point": (joint.first, joint.first_point), "second_point": (joint.second, joint.second_point)}
-        return {
-            name: self._place(*point) if body is None else self._inside(point) for name, (body, point) in points.items()
-        }
+        points = [self._place(*point) if body is None else self._inside(point) for body, point in joint.points]
+        return dict(zip(("first_point", "second_point"), points, strict=True))
 
     def _rolling(self, rolling: Rolling, ground: bool) -> Rolling:
         first, first_arc, second, second_arc = rolling.ground, rolling.ground_arc, rolling.body, rolling.body_arc

@@ -102,7 +102,7 @@ def _wider_vocabulary(monkeypatch):
 
 
 def mechanism_with(element: Any) -> Mechanism:
-    if isinstance(element, JointElement):
+    if element in (RACK, BELT):
         return Mechanism((WHEEL, SLEDGE), (AXLE, element), (0.0, 0.0))
     return Mechanism((WHEEL,), (AXLE,), (0.0, 0.0), (element,))
 
