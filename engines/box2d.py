@@ -42,7 +42,7 @@ import numpy as np
 
 from engines.capability import Capability, Lack
 from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
-from engines.motions import over_three
+from engines.motions import FORCES_COST, over_three
 from engines.sampling import sampled_with_differences, unwrapped
 from engines.single_run import ExtraEngine, Recorded
 from reference.checks import Count, Name, NonNegative, validated
@@ -51,10 +51,9 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-# CPU times [s] of a step of three bodies without its sub-steps, of a sub-step, and of the force elements in numpy.
+# CPU times [s] of a step of three bodies without its sub-steps, and of a sub-step.
 BOX2D_STEP_COST = 3e-6
 SUBSTEP_COST = 0.8e-6
-NUMPY_FORCES_COST = 150e-6
 # The shortest length that the engine permits for a distance joint [m].
 SLOP = 0.005
 # The torque limit of a motor [N m]. The limit is below the largest number in single precision, 3e38.
@@ -245,7 +244,7 @@ class Box2D(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        forces = NUMPY_FORCES_COST if mechanism.forces else 0.0
+        forces = FORCES_COST if mechanism.forces else 0.0
         return (BOX2D_STEP_COST + SUBSTEP_COST * self.substeps) * over_three(mechanism) + forces
 
     def model(self, mechanism: Mechanism, dt: float) -> Box2DWorld:

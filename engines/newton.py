@@ -15,8 +15,9 @@ If a model has no contacts, Kamino allocates matrices for 1000 contacts, and a s
 model's `rigid_contact_max` to 1. A step then takes 1.5 ms and has the same results. The adapter captures a step as a
 graph (`warp.ScopedCapture`), as Newton's examples do on a GPU.
 
-The adapter refuses two solvers. `SolverMuJoCo` is MuJoCo Warp, which is a separate engine here. `SolverFeatherstone`
-ignores a joint that closes a loop without a message.
+The adapter refuses Newton's other solvers. `SolverMuJoCo` is MuJoCo Warp, which is a separate engine here.
+`SolverFeatherstone` ignores a joint that closes a loop without a message. The adapter also refuses two joints between
+the same two bodies, since Newton warns that their meaning is undefined.
 
 Warp compiles and stores kernels at their first use, which takes one or two minutes on a new computer.
 """
@@ -27,7 +28,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +36,7 @@ from numpy.typing import NDArray
 from engines.capability import Capability, Lack
 from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.device import chosen_device
-from engines.motions import over_three
+from engines.motions import FORCES_COST, over_three
 from engines.mujoco_warp import load_warp
 from engines.sampling import sampled_with_differences, unwrapped
 from engines.single_run import ExtraEngine, Recorded, quiet
@@ -46,22 +47,15 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 
 Array = NDArray[np.float64]
-NEWTON_FORCES_COST = 150e-6  # CPU time [s] of one evaluation of the force elements.
 # CPU time [s] of a step of three bodies, by solver and backend.
 NEWTON_STEP_COSTS = {"padmm": 1.5e-3, "dvi": 0.2e-3, "lox": 0.16e-3, "xpbd": 5e-6}
-# Why this adapter refuses a solver of Newton.
-REFUSED_SOLVERS = {
-    "mujoco": "newton's SolverMuJoCo is MuJoCo Warp, which is the engine mujoco-warp here",
-    "featherstone": "newton's SolverFeatherstone ignores a joint that closes a loop without a word",
-}
 
 
 @dataclass(frozen=True)
 class Newton(ExtraEngine):
     """An engine in the sense of `engines.Engine`.
 
-    solver: "kamino" or "xpbd".
-    backend: backend of Kamino, "padmm", "dvi" or "lox".
+    backend: backend of Kamino.
     alpha: fraction of a gap that a step of Kamino closes; LOX does not use `alpha`.
     iterations: number of iterations of XPBD.
     """
@@ -86,8 +80,8 @@ class Newton(ExtraEngine):
     )
 
     variant: Name
-    solver: str = "kamino"
-    backend: str = "padmm"
+    solver: Literal["kamino", "xpbd"] = "kamino"
+    backend: Literal["padmm", "dvi", "lox"] = "padmm"
     alpha: Fraction = 0.01
     iterations: Count = 2
 
@@ -99,12 +93,13 @@ class Newton(ExtraEngine):
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
         step = NEWTON_STEP_COSTS[self.backend if self.solver == "kamino" else "xpbd"]
-        return step * over_three(mechanism) + (NEWTON_FORCES_COST if mechanism.forces else 0.0)
+        return step * over_three(mechanism) + (FORCES_COST if mechanism.forces else 0.0)
 
     def model(self, mechanism: Mechanism, dt: float) -> NewtonModel:
-        if self.solver in REFUSED_SOLVERS:
-            joints = ", ".join(repr(joint.name) for joint in mechanism.joints) or "none"
-            raise Unsupported(f"joints {joints}: {REFUSED_SOLVERS[self.solver]}")
+        pairs = [{joint.first, joint.second} for joint in mechanism.joints]
+        for joint, pair in zip(mechanism.joints, pairs, strict=True):
+            if pairs.count(pair) > 1:
+                raise Unsupported(f"joint {joint.name!r}: newton defines no second joint between the same two bodies")
         return NewtonModel(self, mechanism, dt)
 
 
