@@ -1,8 +1,4 @@
-"""Checks of a run: start, instants, CPU time, repeatability, and comparison with the exact motion.
-
-The comparison checks the instant of a state, the convergence order, the size of reactions, and the effect of force
-elements.
-"""
+"""Checks of a run: start, instants, CPU time, repeatability, and comparison with the exact motion."""
 
 from __future__ import annotations
 
@@ -240,7 +236,7 @@ def _has_its_order(subject: CheckedEngine, world: World, name: str, quantity: st
         errors.append(_largest(getattr(run, name) - getattr(world.exact(run.t), name)))
     steps = [f"{ORDER_SPACING / every:.2g}" for every in STEP_DIVISORS]
     ratios = [(every / STEP_DIVISORS[-1]) ** order for every in STEP_DIVISORS[:-1]]
-    expected = max(error * ratio for error, ratio in zip(errors, ratios, strict=False))
+    expected = max(error * ratio for error, ratio in zip(errors[:-1], ratios, strict=True))
     smallest = SMALLEST_ERROR + LOW_PRECISION_STEPS * subject.engine.precision
     bound = max(ORDER_MARGIN * expected, smallest * (1 + _largest(world.mechanism.twist)))
     require(
@@ -337,10 +333,8 @@ CHECKS = tuple(
     ConformanceCheck(function, worlds)
     for worlds, functions in (
         (MOVING, (samples_at_the_right_times, tells_the_cpu_time_of_stepping, gives_the_same_bits)),
-        (
-            MOVING,
-            (leaves_the_mechanism_alone, sampling_changes_nothing, poses_have_their_order, twists_have_their_order),
-        ),
+        (MOVING, (leaves_the_mechanism_alone, sampling_changes_nothing)),
+        (MOVING, (poses_have_their_order, twists_have_their_order)),
         ((*WORLDS, SPINNING), (first_pose_is_the_start, first_twist_is_the_start)),
         ((SPINNING,), (does_not_wrap_angles,)),
         (WORLDS, (reactions_have_sign_and_size,)),

@@ -168,10 +168,7 @@ def roll_rows(numbers: Any, first: State, second: State) -> tuple[Row, Row]:
 
 @compiled
 def _move(plan: Any, at: int, moving: int, to: int, q: Any, v: Any) -> None:
-    """Write the motion of the link at index `at`, for the coordinates q + ahead v, to index `to`.
-
-    The motion of the parent must already be in the plan.
-    """
+    """Write the motion of the link at index `at`, for coordinates q + ahead v, to index `to`. Parents come first."""
     parent, slide, rotation = int(plan[at + PARENT]), int(plan[at + SLIDE]), int(plan[at + ROTATION])
     ahead = plan[AHEAD]
     turn, spin = (0.0, 0.0) if rotation < 0 else (q[rotation] + ahead * v[rotation], v[rotation])

@@ -148,13 +148,9 @@ def integrate_rates(
     def odes(_: float, angles: Array) -> Array:
         theta, beta, phi = (float(value) for value in angles)
         closing = math.sin(beta - phi) or math.nan
-        return np.array(
-            [
-                theta_dot,
-                (l1 / l2) * math.sin(phi - theta) / closing * theta_dot,
-                (l1 / l3) * math.sin(beta - theta) / closing * theta_dot,
-            ]
-        )
+        beta_dot = (l1 / l2) * math.sin(phi - theta) / closing * theta_dot
+        phi_dot = (l1 / l3) * math.sin(beta - theta) / closing * theta_dot
+        return np.array([theta_dot, beta_dot, phi_dot])
 
     out = np.full((times.size, 3), np.nan)
     out[0] = start
@@ -342,12 +338,7 @@ class FourBar(Valid):
 
     @validated
     def integrate_rates(
-        self,
-        t: ArrayLike,
-        theta_dot: float = 10.0,
-        theta: float = math.pi / 2,
-        branch: Sign = 1,
-        **settings: Any,
+        self, t: ArrayLike, theta_dot: float = 10.0, theta: float = math.pi / 2, branch: Sign = 1, **settings: Any
     ) -> RateIntegration:
         """The motion by the chapter's pseudocode, a method under test, with the settings of `integrate_rates`."""
         beta, phi = self.angles(theta, branch)
