@@ -25,6 +25,7 @@ from typing import NamedTuple
 from engines.user_cache import cache_folder
 
 SOURCE_FOLDER = Path(__file__).parent
+COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
 
 
 @cache

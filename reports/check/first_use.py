@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from engines.lagrange import TRUTH
-from engines.lagrange.loading import add_numpy_seconds, is_cold, numpy_seconds
+from engines.lagrange.loading import COMPILING_NOTE, add_numpy_seconds, is_cold, numpy_seconds
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reports.check.judging import LOOSER_JUDGE, IdealMotion, reference_motion
@@ -25,7 +25,6 @@ PROBE_SHARE = 0.1  # The time in numpy is measured for this share of the motion.
 # CPU time of the reference motion divided by the time of a run with the looser tolerance. The reference motion consists
 # of five runs. Measured ratios are 5 to 8.
 MOTION_PER_RUN = 8.0
-COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
 
 
 def ideal_motion(

@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from engines import method_name
-from engines.lagrange.loading import is_cold
+from engines.lagrange.loading import COMPILING_NOTE, is_cold
 from reports.cli.known import Choice, choose
 from reports.cli.options import (
     FOLDER,
@@ -175,7 +175,7 @@ def run_interruptible(
     """
     by = crew or cluster.pool(None)
     if is_cold(adaptive=False) and any(map(_needs_machine_code, items)):
-        print("compiling the judge's machine code, once for this installation: up to two minutes", file=sys.stderr)
+        print(COMPILING_NOTE, file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
         return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 TORN = 0.05  # A larger gap, relative to the mechanism's length, is a torn joint. Softness causes much smaller gaps.
 BLOWN = 1e3  # A larger gap, relative to the mechanism's length, means that the run has diverged.
+SILENT = "without a warning"  # These words are in the sentence of a torn joint if the engine has no warning.
 SATURATED = 0.5  # A larger angle error [rad] is not proportional to its cause.
 
 
@@ -162,7 +163,7 @@ def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, co
         return Outcome.DIVERGED, f"a joint opened by {row.gap:.2g} m"
     if row.gap > TORN * length:
         # Warnings of the engine count, but warnings of our adapters do not.
-        quiet = "" if trajectory.has_engine_warning else ", without a warning"
+        quiet = "" if trajectory.has_engine_warning else f", {SILENT}"
         return Outcome.TORN, f"a joint opened by {row.gap:.2g} m in a mechanism of {length:.2g} m{quiet}"
     if row.drive_gap > SATURATED:
         return Outcome.TORN, f"the drive fell behind by {row.drive_gap:.2g} rad"

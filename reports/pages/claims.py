@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from reports.model.outcomes import Outcome
+from reports.model.outcomes import SILENT, Outcome
 from reports.model.page import Failure, Material, Page
 from reports.pages.atlas.page import stored_columns
 from reports.pages.guides import page as guides
@@ -69,7 +69,7 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "comparable": lambda method: [Outcome(row.outcome).comparable for row in rows(method)],
         "unresolved": lambda method: all("unresolved" in f"{row.outcome} {row.sentence}" for row in rows(method)),
         "estimated": lambda method: all(row.estimate > row.angle for row in rows(method)),
-        "silent": lambda: all("without a warning" in row.sentence for row in experiment),
+        "silent": lambda: all(SILENT in row.sentence for row in experiment),
         "smallest": lambda name, *methods: min(errors(methods, name)),
         "largest": lambda name, *methods: max(errors(methods, name)),
         "falls": falls,

@@ -44,7 +44,7 @@ def test_the_code_is_compiled_if_numpy_would_take_longer(new_installation, limit
     loading.add_numpy_seconds(spent)
     first_use.ideal_motion(FreeFourBar().mechanism(), SAMPLES, SPACING, 1e-4, new_installation.append)
     assert new_installation[0] == NUMPY_NOTE
-    assert new_installation[1].startswith(first_use.COMPILING_NOTE)
+    assert new_installation[1].startswith(loading.COMPILING_NOTE)
 
 
 def test_a_motion_that_numpy_does_not_resolve_is_repeated_in_machine_code(new_installation, monkeypatch):
