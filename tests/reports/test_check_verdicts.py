@@ -103,9 +103,8 @@ def of_pymunk(path: Path, t: NDArray[Any]) -> tuple[float, float]:
 def checked(path: Path, duration: float) -> CheckResult:
     """The result of a check that tries no other settings."""
     step = STEP if path.suffix == ".py" else None
-    return check(
-        read_user_model(path.name, path.parent, ReadingTerms(step=step)), path.name, duration, 1e-4, plan=SweepPlan(0.0)
-    )
+    reading = read_user_model(path.name, path.parent, ReadingTerms(step=step))
+    return check(reading, path.name, duration, 1e-4, plan=SweepPlan(0.0))
 
 
 # Models as (name, duration [s], degrees of freedom, expected length scale [m] or None).
@@ -337,20 +336,15 @@ def test_the_declared_softness_of_a_loop_follows_the_diagonal_that_the_flag_sele
     run, soft = {}, {}
     turned = "20 35 10" if "connect" in loop else "0 0 0"
     for flag in ("enable", "disable"):
-        text = FOUR_BAR.replace(
-            '<option timestep="0.002"/>',
-            f'<option timestep="1e-4" integrator="RK4"><flag diagexact="{flag}"/></option>',
-        )
-        text = re.sub(r"<connect.*?/>", LOOPS[loop], text)
-        text = text.replace("<worldbody>", f'<worldbody><body euler="{turned}">').replace(
-            "</worldbody>", "</body></worldbody>"
-        )
+        option = f'<option timestep="1e-4" integrator="RK4"><flag diagexact="{flag}"/></option>'
+        text = re.sub(r"<connect.*?/>", LOOPS[loop], FOUR_BAR.replace('<option timestep="0.002"/>', option))
+        text = text.replace("<worldbody>", f'<worldbody><body euler="{turned}">')
+        text = text.replace("</worldbody>", "</body></worldbody>")
         reading = read_model(mujoco.MjModel.from_xml_string(text))
         assert refuse_disagreement(reading) < 1e-7
         run[flag] = reading.model.run(5, 200)
         soft[flag] = soft_motion(reading.mechanism, reading.model.regularisation, run[flag].t)
-        assert pose_distance(reading.mechanism, soft[flag], run[flag].pose).max() < (
-            1e-8 if "connect" in loop else 1e-7
-        )
+        bound = 1e-8 if "connect" in loop else 1e-7
+        assert pose_distance(reading.mechanism, soft[flag], run[flag].pose).max() < bound
     if "connect" in loop:
         assert pose_distance(reading.mechanism, soft["enable"], run["disable"].pose).max() > 1e-7  # the flag matters
