@@ -75,7 +75,7 @@ class MuJoCoOnDevice(ExtraEngine):
 
     def compiled(self, mechanism: Mechanism, dt: float, unit: float | None = None) -> MuJoCoModel:
         """The model of our MuJoCo adapter with masses in `unit` [kg]; raises Unsupported for a model with callbacks."""
-        model = self.settings.model(mechanism, dt) if unit is None else self.settings.model(mechanism, dt, unit=unit)
+        model = self.settings.model(mechanism, dt, unit)
         if model.hooks:
             raise Unsupported(f"some rows are written by callbacks of MuJoCo's C code, which {self.title} does not run")
         return model

@@ -28,6 +28,7 @@ import json
 import math
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -76,12 +77,15 @@ def _capability(engine: str, lacks_rod: str = "") -> Capability:
 
 
 def install() -> None:
-    """Install the packages of all engines. Raises CalledProcessError, and FileNotFoundError without npm."""
+    """Install the packages of all engines, or end the program with one line if npm is missing or fails."""
     folder = npm_folder()
     folder.mkdir(parents=True, exist_ok=True)
     packages = [f"{package}@{engine.release}" for engine in ENGINES for package in engine.packages]
     options = ["--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts", "--save-exact"]
-    subprocess.run([shutil.which("npm") or "npm", "install", *options, *packages], check=True)
+    try:
+        subprocess.run([shutil.which("npm") or "npm", "install", *options, *packages], check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"npm did not install the engines of the browser: {error}")
 
 
 class Child:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engines import Unsupported, mujoco_warp
+from engines import Unsupported, mjx, mujoco_warp
 from engines.device import DEVICE, chosen_device
 from reference.scenes.catalogue import scene
 from tests.engines.test_promised import MECHANISMS, SAMPLES, installed, span
@@ -26,10 +26,11 @@ def test_an_unknown_device_is_refused_by_name(monkeypatch):
         chosen_device()
 
 
-def test_joints_that_need_a_contact_are_refused():
+@pytest.mark.parametrize("engine", [mjx.DEFAULT, mujoco_warp.DEFAULT], ids=lambda engine: engine.name)
+def test_joints_that_need_a_contact_are_refused(engine):
     for name in ("sleigh", "rolling_disc"):
-        with pytest.raises(Unsupported, match="our adapter of MuJoCo Warp builds none"):
-            mujoco_warp.DEFAULT.build(scene(name).mechanism(), 1e-2)
+        with pytest.raises(Unsupported, match=f"our adapter of {engine.title} builds none"):
+            engine.build(scene(name).mechanism(), 1e-2)
 
 
 @pytest.mark.slow

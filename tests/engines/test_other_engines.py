@@ -274,12 +274,6 @@ def _programs_forgotten():
         sys.modules["jax"].clear_caches()
 
 
-def test_elements_that_need_c_callbacks_are_refused():
-    for name in ("sleigh", "rolling_disc"):
-        with pytest.raises(Unsupported, match="our adapter of MJX builds none"):
-            MJX.build(BY_NAME[name].mechanism(), 1e-2)
-
-
 NO_DEVICE = """
 from engines import Unsupported
 from engines.mjx import DEFAULT as MJX
