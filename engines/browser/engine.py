@@ -51,7 +51,7 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-Settings = tuple[tuple[str, float], ...]  # parameters of the engine by name
+Settings = tuple[tuple[Name, float], ...]  # parameters of the engine by name
 INSTALL = "python -m engines.browser"
 STEP_COST = 20e-6  # approximate CPU time [s] of a step of three bodies
 SINGLE = 2.0**-23
@@ -96,6 +96,7 @@ class Child:
         command = [shutil.which("node") or "node", str(script), str(npm_folder()), engine, json.dumps(dict(settings))]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.engine, self.settings, self.numbers = engine, settings, itertools.count()
+        self.unused: list[int] = []  # worlds that the next request drops
 
     def close(self) -> None:
         for pipe in (self.process.stdin, self.process.stdout):
@@ -107,7 +108,8 @@ class Child:
         """Send a request and return the answer. Raises Unsupported for a refusal, RuntimeError for an ended process."""
         assert self.process.stdin
         assert self.process.stdout
-        self.process.stdin.write(json.dumps({"operation": operation, **request}) + "\n")
+        unused, self.unused = self.unused, []
+        self.process.stdin.write(json.dumps({"operation": operation, "unused": unused, **request}) + "\n")
         self.process.stdin.flush()
         line = self.process.stdout.readline()
         if not line:
@@ -200,9 +202,8 @@ class BrowserWorld:
         self.size = Size(count, 3 * count, rows, rows)
 
     def __del__(self) -> None:
-        if hasattr(self, "inertias") and self.child.process.poll() is None:
-            with suppress(OSError, RuntimeError):
-                self.child.ask("drop", id=self.number)
+        if hasattr(self, "number"):  # a request here could come between another request and its answer
+            self.child.unused.append(self.number)
 
     def record(self, samples: int, every: int) -> Recorded:
         run = self.child.ask("run", id=self.number, samples=samples, every=every)
@@ -231,7 +232,7 @@ class BrowserEngine(ExtraEngine):
     release: ClassVar[str]
 
     variant: Name
-    settings: tuple[tuple[Name, float], ...] = ()
+    settings: Settings = ()
 
     @property
     def missing(self) -> str:

@@ -268,7 +268,7 @@ const handle = {
       for (const samples of WARM_RUNS) {
         handle.build({ id: "trial", ...mechanism }, engine);
         handle.run({ id: "trial", samples, every: WARM_STEPS / samples });
-        handle.drop({ id: "trial" });
+        drop("trial");
       }
     }
     const world = new World(engine, mechanism);
@@ -293,16 +293,17 @@ const handle = {
     const { user, system } = process.cpuUsage(begin);
     return { poses, twists, before, seconds: (user + system) / 1e6 };
   },
-  drop({ id }) {
-    worlds.get(id)?.[0].close?.();
-    worlds.delete(id);
-    return {};
-  },
 };
+
+function drop(id) {
+  worlds.get(id)?.[0].close?.();
+  worlds.delete(id);
+}
 
 const engine = await World.load();
 for await (const line of createInterface({ input: process.stdin })) {
-  const { operation, ...request } = JSON.parse(line);
+  const { operation, unused, ...request } = JSON.parse(line);
+  unused.forEach(drop);
   let answer;
   try {
     answer = handle[operation](request, engine);
