@@ -31,6 +31,7 @@ LAGRANGE = next(engine for engine in VARIANTS if engine.name == "lagrange")
 def forget() -> None:
     for name in ("_versions", "_our_files", "_required"):
         getattr(fingerprint, name).cache_clear()
+    provenance._version.cache_clear()
 
 
 def key(*values: Any, folders: tuple[str, ...] = MEASURING) -> str:
@@ -166,15 +167,8 @@ def test_a_release_under_another_distribution_name_changes_the_key_of_rows(monke
     assert fingerprint._rivals(["nothing"]) == set()
 
 
-@pytest.fixture
-def other_versions(monkeypatch):
-    """`monkeypatch`, with the caches of versions cleared before and after the test."""
-    provenance._version.cache_clear()
-    yield monkeypatch
-    provenance._version.cache_clear()
-
-
-def test_versions_are_those_of_the_named_packages(other_versions):
+def test_versions_are_those_of_the_named_packages(monkeypatch):
+    forget()
     numbers = {"numpy": "1.1", "scipy": "2.2", "pymunk": "3.3"}
 
     def version(name):
@@ -182,8 +176,8 @@ def test_versions_are_those_of_the_named_packages(other_versions):
             raise metadata.PackageNotFoundError(name)
         return numbers[name]
 
-    other_versions.setattr(metadata, "version", version)
-    other_versions.setattr(platform, "python_version", lambda: "3.99")
+    monkeypatch.setattr(metadata, "version", version)
+    monkeypatch.setattr(platform, "python_version", lambda: "3.99")
     compiled = ", numba not installed" if loading.installed() else ""
     assert versions() == f"Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed{compiled}"
     assert still_installed("Python 3.99, numpy 1.1, scipy 2.2, pymunk 3.3, mujoco-core not installed")

@@ -225,10 +225,7 @@ def test_the_animation_of_the_readme_is_small_and_respects_reduced_motion():
         ("{{ row }} {{ unknown }} {{ nothing }}", f"{NOT_MEASURED} {NOT_MEASURED} {NOT_MEASURED}"),
         ("{% if row %}run{% else %}not run{% endif %}", "not run"),
         ("a{% filter if_measured %}: {{ row.angle | number }} rad{% endfilter %}.", "a."),
-        (
-            "a{% filter if_measured %}: 1{% filter if_measured %}, {{ row }}{% endfilter %}{% endfilter %}.",
-            "a: 1.",
-        ),
+        ("a{% filter if_measured %}: 1{% filter if_measured %}, {{ row }}{% endfilter %}{% endfilter %}.", "a: 1."),
         ("a\n![A chart]({{ pictures.chart }})\nb", "a\nb"),
         ("a\n![A chart]({{ pictures.drawn }})\nb", "a\n![A chart](drawn.svg)\nb"),
     ],

@@ -236,11 +236,7 @@ COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (
 def test_the_enforcement_of_joints_determines_the_column_of_a_method():
     for variant, by, column in COLUMNS:
         assert engine_tables.column_of(Disc(), HeldBy(variant, by=by)) is column
-    cells = [
-        Cell(FREE, HeldBy("x", by="ours"), 1),
-        Cell(FREE, HeldBy("x"), 1),
-        Cell(FREE, HeldBy("x", by="ours"), 10),
-    ]
+    cells = [Cell(FREE, HeldBy("x", by="ours"), 1), Cell(FREE, HeldBy("x"), 1), Cell(FREE, HeldBy("x", by="ours"), 10)]
     assert engine_tables.enforcement_by_method(cells) == {"toy x": "our code or engine"}
 
 

@@ -215,12 +215,8 @@ COMPILED_CELLS = tuple(
 )
 
 # There is one task for each engine, because variants of an engine build almost the same elements.
-MATRIX = tuple(
-    map(
-        Capabilities,
-        tuple({engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}.values())[::-1],
-    )
-)
+FIRST_VARIANTS = {engine.name: engine for engine in reversed((*registry.VARIANTS, *registry.OTHERS))}
+MATRIX = tuple(map(Capabilities, reversed(FIRST_VARIANTS.values())))
 # The variants "tuned" of engines that declare compliant loops, since their compliance is small.
 VELOCITY_TERMS = tuple(
     VelocityTerm(engine)
