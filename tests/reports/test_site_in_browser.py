@@ -240,6 +240,27 @@ def test_the_address_stores_only_changes_by_the_reader(opened):
     assert "up to" in linked.inner_text(".legend .method-1")
     # The sentence of the marked experiment has the linked number, also without the number of an experiment.
     assert linked.inner_text("#part-1.shown .drag[data-name=coupler]") == "0.65"
+    linked = opened("lessons/four_bar.html#set&part=4&scene=1&1.steps=1", viewport=TALL)
+    linked.wait_for_selector("#lesson.ready")
+    steps = linked.text_content("#part-4.shown .drag[data-name=steps]")
+    assert steps != linked.text_content("#part-5 .drag[data-name=steps]")
+    assert steps == linked.evaluate("crosscheck.form.words('steps')")
+
+
+@pytest.mark.parametrize("part", [2, 4, 6, 7])
+def test_a_linked_experiment_stays_in_the_picture_of_a_phone(opened, part):
+    """The page itself scrolls to the experiment, and scrolls again when it gets its height."""
+    scene = BY_NAME["four_bar"].scenes.index(BY_NAME["four_bar"].scene(BY_NAME["four_bar"].experiments[part - 1].scene))
+    page = opened(f"lessons/four_bar.html#set&part={part}&scene={scene}&{scene}.steps=1", viewport=PHONE)
+    page.wait_for_selector("#lesson.ready")
+    page.wait_for_timeout(300)  # later scroll events come within 100 ms
+    shown = "document.querySelector('.part.shown').id"
+    assert page.evaluate(shown) == f"part-{part}"
+    page.mouse.wheel(0, 20)
+    page.wait_for_timeout(300)
+    assert page.evaluate(shown) == f"part-{part}"
+    page.mouse.wheel(0, -1500)
+    page.wait_for_function(f"{shown} !== 'part-{part}'")  # the reader's scrolling selects another one
 
 
 def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):

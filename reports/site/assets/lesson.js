@@ -3,9 +3,9 @@
 
 import { dragged } from "./exact.js";
 import { Form } from "./form.js";
-import { told, UNITS } from "./motion.js";
+import { told } from "./motion.js";
 import { Player } from "./player.js";
-import { worded } from "./quantities.js";
+import { cell, expected } from "./quantities.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting */
 /** @typedef {any} Answer the result of `answer` in worker.js */
@@ -27,7 +27,7 @@ let worker = null;
 const asked = new Map();
 let number = 0;
 let scrolled = false; // whether the reader has scrolled; only then the experiment in the window is shown
-let jumping = false; // whether the next scrolling is the page's own
+let jumping = false; // whether the page has scrolled to a linked experiment, and the reader has not acted since
 /** @type {Answer} */
 let shown = null;
 /** @type {number[]|null} the poses at which the reader released the mechanism */
@@ -247,34 +247,6 @@ function compare(part, runs, answers, wrong) {
   table.hidden = false;
 }
 
-/** Return the error and the quantities of one motion, compared with those before. @param {string} name @param {Answer} answer @param {Answer|null} before */
-function cell(name, answer, before) {
-  const unit = UNITS[/** @type {"angle"|"position"} */ (answer.measure)];
-  const error = answer.motions.find((/** @type {any} */ one) => one.name === name)?.error;
-  const old = before?.motions.find((/** @type {any} */ one) => one.name === name)?.error;
-  const missing = name === "exact" ? [] : [name in answer.lost ? "cannot be run here" : "–"];
-  const errors = error === undefined ? missing : [`${told(error)}${Number.isFinite(error) ? ` ${unit}` : ""}${ratio(error, old)}`];
-  const numbers = answer.quantities.filter((/** @type {any} */ each) => each.found[name] !== undefined && (each.found[name] || each.kind === "bend"));
-  return [...errors, ...numbers.map((/** @type {any} */ each) => `${each.words} ${worded(each.kind, each.found[name])}`)].join("; ");
-}
-
-/** @param {number} error @param {number|undefined} old */
-function ratio(error, old) {
-  if (old === undefined || !(old > 0) || !(error > 0)) return "";
-  const by = Math.max(error / old, old / error);
-  const times = Number(by.toPrecision(2)).toLocaleString("en");
-  return by < 1.05 ? ", as before" : `, ${times} times ${error > old ? "as large" : "smaller"}`;
-}
-
-/** Return what a wrong answer predicts. @param {string} name @param {number|undefined} times @param {Answer} before @param {string|undefined} of */
-function expected(name, times, before, of) {
-  if (times === undefined) return "";
-  const quantity = before.quantities.find((/** @type {any} */ { kind }) => kind === of);
-  if (quantity) return `${quantity.words} ${worded(quantity.kind, quantity.found[name]?.map((/** @type {number} */ value) => value * times))}`;
-  const old = before.motions.find((/** @type {any} */ one) => one.name === name)?.error;
-  return old === undefined ? "" : `about ${told(old * times)} ${UNITS[/** @type {"angle"|"position"} */ (before.measure)]}`;
-}
-
 /** Store changes by the reader in the address. */
 function changed() {
   if (startScene !== form.index) start = null;
@@ -338,11 +310,10 @@ function begin() {
     held = null;
     changed();
   });
-  addEventListener("scroll", () => {
-    if (!jumping) scrolled = true;
-    jumping = false;
-  }, { passive: true });
-  // The picture shows the experiment in the middle of the window. The first experiment loads the engines.
+  // One jump causes several scroll events, since the page's height changes while it loads. Only an action of the reader ends it.
+  for (const action of ["wheel", "touchmove", "pointerdown", "keydown"]) addEventListener(action, () => (jumping = false), { passive: true });
+  addEventListener("scroll", () => (scrolled ||= !jumping), { passive: true });
+  // The picture shows the experiment in a strip of the window, which a phone has below its picture. The first experiment loads the engines.
   const linked = restored();
   const parts = [...root.querySelectorAll(".part")];
   const looking = new IntersectionObserver((entries) => {
@@ -350,7 +321,7 @@ function begin() {
     for (const { target } of scrolled ? near : []) {
       if (target instanceof HTMLElement && !target.querySelector(".answers .chosen")) stageOf(target, {}, true);
     }
-  }, { rootMargin: "-25% 0px -70% 0px" });
+  }, { rootMargin: matchMedia("(max-width: 52rem)").matches ? "-45% 0px -50% 0px" : "-25% 0px -70% 0px" });
   for (const part of parts) looking.observe(part);
   if (!linked && parts[0] instanceof HTMLElement) stageOf(parts[0], {}, true);
   addEventListener("hashchange", restored);

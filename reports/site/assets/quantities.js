@@ -1,7 +1,7 @@
 // @ts-check
 /** Numbers of a motion that a lesson shows beside its errors; reports/site/lesson.py describes them. */
 
-import { ends, instantCentre, poseAt, told } from "./motion.js";
+import { ends, instantCentre, poseAt, told, UNITS } from "./motion.js";
 
 /** @typedef {{kind: "gap"|"rates"|"bend"|"centre"|"contact", words: string, bodies: number[]}} Quantity
  * @typedef {{pose: ArrayLike<number>, twist: ArrayLike<number>}} States
@@ -50,10 +50,38 @@ export function measured({ kind, bodies }, run, states) {
   }
 }
 
-const UNITS = { gap: "m", rates: "rad/s", bend: "s", centre: "m", contact: "m" };
+const QUANTITY_UNITS = { gap: "m", rates: "rad/s", bend: "s", centre: "m", contact: "m" };
 
 /** Return a quantity as text. @param {Quantity["kind"]} kind @param {Found|undefined} found */
 export function worded(kind, found) {
   if (!found) return kind === "bend" ? "never" : "–";
-  return `${found.map(told).join(" to ")} ${UNITS[kind]}`;
+  return `${found.map(told).join(" to ")} ${QUANTITY_UNITS[kind]}`;
+}
+
+/** Return the error and the quantities of one motion, compared with those before. @param {string} name @param {any} answer @param {any} before */
+export function cell(name, answer, before) {
+  const unit = UNITS[/** @type {"angle"|"position"} */ (answer.measure)];
+  const error = answer.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+  const old = before?.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+  const missing = name === "exact" ? [] : [name in answer.lost ? "cannot be run here" : "–"];
+  const errors = error === undefined ? missing : [`${told(error)}${Number.isFinite(error) ? ` ${unit}` : ""}${ratio(error, old)}`];
+  const numbers = answer.quantities.filter((/** @type {any} */ each) => each.found[name] !== undefined && (each.found[name] || each.kind === "bend"));
+  return [...errors, ...numbers.map((/** @type {any} */ each) => `${each.words} ${worded(each.kind, each.found[name])}`)].join("; ");
+}
+
+/** @param {number} error @param {number|undefined} old */
+function ratio(error, old) {
+  if (old === undefined || !(old > 0) || !(error > 0)) return "";
+  const by = Math.max(error / old, old / error);
+  const times = Number(by.toPrecision(2)).toLocaleString("en");
+  return by < 1.05 ? ", as before" : `, ${times} times ${error > old ? "as large" : "smaller"}`;
+}
+
+/** Return what a wrong answer predicts. @param {string} name @param {number|undefined} times @param {any} before @param {string|undefined} of */
+export function expected(name, times, before, of) {
+  if (times === undefined) return "";
+  const quantity = before.quantities.find((/** @type {any} */ { kind }) => kind === of);
+  if (quantity) return `${quantity.words} ${worded(quantity.kind, quantity.found[name]?.map((/** @type {number} */ value) => value * times))}`;
+  const old = before.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+  return old === undefined ? "" : `about ${told(old * times)} ${UNITS[/** @type {"angle"|"position"} */ (before.measure)]}`;
 }
