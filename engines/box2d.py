@@ -41,7 +41,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engines.capability import Capability, Lack
-from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
+from engines.contract import SINGLE_PRECISION, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.motions import FORCES_COST, over_three
 from engines.sampling import sampled_with_differences, unwrapped
 from engines.single_run import ExtraEngine, Recorded
@@ -219,7 +219,7 @@ class Box2D(ExtraEngine):
     packages = ("pyb2d3",)
     modules: ClassVar[tuple[str, ...]] = ("pyb2d3",)
     forces_by: ClassVar[Enforcement] = "ours"
-    precision: ClassVar[float] = 2.0**-23
+    precision: ClassVar[float] = SINGLE_PRECISION
     angle_error: ClassVar[float] = 2.8e-5  # error of b2Atan2 (math_functions.h) in the angle of a weld
     capability: ClassVar[Capability] = Capability(
         "box2d",

@@ -55,6 +55,7 @@ from reference.trajectory import RunWarning, Trajectory
 EXACT = math.inf
 # A method with an error estimate claims this largest error of poses, in rad or relative to the mechanism's length.
 CLAIM = 1e-7
+SINGLE_PRECISION = 2.0**-23  # `Engine.precision` of an engine that computes in single precision
 
 Enforcement = Literal["engine", "engine, our rows", "ours"]
 

@@ -38,7 +38,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.capability import Capability
-from engines.contract import ConvergenceOrder, NotDeclared, Unsupported
+from engines.contract import SINGLE_PRECISION, ConvergenceOrder, NotDeclared, Unsupported
 from engines.device import chosen_device
 from engines.mujoco.methods import TUNED as C_TUNED
 from engines.mujoco.model import MuJoCoModel
@@ -79,7 +79,7 @@ class MuJoCoWarp(MuJoCoOnDevice):
     packages = ("mujoco-warp", "warp-lang", "mujoco-core")
     modules: ClassVar[tuple[str, ...]] = ("warp", "mujoco_warp")
     apart: ClassVar[str] = "pip install --no-deps mujoco-warp"
-    precision: ClassVar[float] = 2.0**-23
+    precision: ClassVar[float] = SINGLE_PRECISION
     capability: ClassVar[Capability] = without_contacts("mujoco-warp", "MuJoCo Warp")
 
     @validated

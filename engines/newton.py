@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.capability import Capability, Lack
-from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
+from engines.contract import SINGLE_PRECISION, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.device import chosen_device
 from engines.motions import FORCES_COST, over_three
 from engines.mujoco_warp import load_warp
@@ -64,7 +64,7 @@ class Newton(ExtraEngine):
     packages = ("newton", "warp-lang")
     modules: ClassVar[tuple[str, ...]] = ("warp", "newton")
     build_time: ClassVar[float] = 5.0
-    precision: ClassVar[float] = 2.0**-23
+    precision: ClassVar[float] = SINGLE_PRECISION
     forces_by: ClassVar[Enforcement] = "ours"
     capability: ClassVar[Capability] = Capability(
         "newton",

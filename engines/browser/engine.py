@@ -39,7 +39,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engines.capability import Capability, Lack
-from engines.contract import ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
+from engines.contract import SINGLE_PRECISION, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.extrapolated import Extrapolated
 from engines.motions import over_three
 from engines.package_versions import installed_version, npm_folder
@@ -54,7 +54,6 @@ from reference.trajectory import RunWarning
 Settings = tuple[tuple[Name, float], ...]  # parameters of the engine by name
 INSTALL = "python -m engines.browser"
 STEP_COST = 20e-6  # approximate CPU time [s] of a step of three bodies
-SINGLE = 2.0**-23
 SPEED_CUT = RunWarning("upstream: the engine cut a velocity to its limit", "rate limit", "upstream")
 # Largest velocities [m/s, rad/s] that an engine allows, as functions of the step [s].
 SPEED_LIMITS: Mapping[str, Callable[[float], tuple[float, float]]] = {
@@ -276,7 +275,7 @@ class P2(BrowserEngine):
     @property
     def precision(self) -> float:  # pyright: ignore[reportIncompatibleVariableOverride]
         """p2 uses single precision unless the variable P2_ARRAY_TYPE is set before p2 is loaded."""
-        return 0.0 if dict(self.settings).get("double") else SINGLE
+        return 0.0 if dict(self.settings).get("double") else SINGLE_PRECISION
 
 
 class Rapier(BrowserEngine):
@@ -288,7 +287,7 @@ class Rapier(BrowserEngine):
     capability = _capability(
         "rapier", "rapier's joints of two points keep a largest distance or act as a spring (JointData)"
     )
-    precision = SINGLE
+    precision = SINGLE_PRECISION
 
 
 class Jolt(BrowserEngine):
@@ -298,7 +297,7 @@ class Jolt(BrowserEngine):
     packages = ("jolt-physics",)
     release = "1.1.0"
     capability = _capability("jolt")
-    precision = SINGLE
+    precision = SINGLE_PRECISION
 
 
 ENGINES = (Planck, P2, Rapier, Jolt)
