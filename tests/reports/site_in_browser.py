@@ -136,8 +136,8 @@ RUN_ENGINES = """async ([scene, places, start, wanted]) => {
   const missed = told.exact.computed ? await ask({ kind: "check", setting }) : null;
   return { exact: { pose: [...told.exact.pose], missed }, lost: told.lost, idle: told.idle,
     own: told.own, quantities: Object.fromEntries(told.quantities.map(({ kind, found }) => [kind, found])),
-    motions: Object.fromEntries(told.motions.map(({ name, pose, twist, error, from, apart }) =>
-      [name, { pose: [...pose], twist: [...twist], error, from, apart }])) };
+    motions: Object.fromEntries(told.motions.map(({ name, pose, twist, error, why, apart }) =>
+      [name, { pose: [...pose], twist: [...twist], error, why, apart }])) };
 }"""
 
 

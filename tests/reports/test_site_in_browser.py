@@ -158,8 +158,10 @@ def test_a_mechanism_that_the_reader_releases_moves_as_in_python(running, lesson
     steps = live.steps[live.start]
     samples, step = live.samples(steps), live.scene.duration / steps
     exact = Lagrange("dop853", "projection").build(released, live.scene.duration / samples / 10)(samples, 10).pose
-    assert np.abs(np.reshape(answer["exact"]["pose"], exact.shape) - exact).max() < 1e-8
-    assert answer["exact"]["missed"] < 1e-8
+    error = np.abs(np.reshape(answer["exact"]["pose"], exact.shape) - exact).max()
+    assert error < 1e-8
+    # The page states the difference from a motion with a tolerance that is a hundred times as large.
+    assert error < answer["exact"]["missed"] + 1e-12 < 1e-6
     python = pymunk.DEFAULT.build(released, step)(samples, steps // samples).pose
     assert np.abs(np.reshape(answer["motions"]["munk"]["pose"], python.shape) - python).max() < 1e-9
     # The stiffness of MuJoCo's loops depends on the pose at which a model is compiled, so Python's motion differs.
@@ -247,7 +249,7 @@ def test_the_address_stores_only_changes_by_the_reader(opened):
     assert steps == linked.evaluate("crosscheck.form.words('steps')")
 
 
-@pytest.mark.parametrize("part", [2, 4, 6, 7])
+@pytest.mark.parametrize("part", [4, 7])
 def test_a_linked_experiment_stays_in_the_picture_of_a_phone(opened, part):
     """The page itself scrolls to the experiment, and scrolls again when it gets its height."""
     scene = BY_NAME["four_bar"].scenes.index(BY_NAME["four_bar"].scene(BY_NAME["four_bar"].experiments[part - 1].scene))
@@ -256,9 +258,7 @@ def test_a_linked_experiment_stays_in_the_picture_of_a_phone(opened, part):
     page.wait_for_timeout(300)  # later scroll events come within 100 ms
     shown = "document.querySelector('.part.shown').id"
     assert page.evaluate(shown) == f"part-{part}"
-    page.mouse.wheel(0, 20)
-    page.wait_for_timeout(300)
-    assert page.evaluate(shown) == f"part-{part}"
+    page.mouse.move(195, 700)  # the text, which scrolls
     page.mouse.wheel(0, -1500)
     page.wait_for_function(f"{shown} !== 'part-{part}'")  # the reader's scrolling selects another one
 
@@ -292,8 +292,9 @@ def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):
     [
         (
             "**/packages/mujoco.*",
-            ".legend .method-2",
-            "its file could not be loaded. Check the network",
+            ".status",
+            "MuJoCo: its file could not be loaded. Check the network or the browser's blocker, then reload the page. "
+            "The picture shows the stored motion of Python.",
         ),
         (
             "**/live/*.json",

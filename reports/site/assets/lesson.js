@@ -130,8 +130,8 @@ async function show(answer, play, ways) {
   if (player.take) player.lens.load(player.take);
   for (const name in NAMES) {
     const entry = find(`.legend .method-${MARKS[name]}`);
-    const from = motions.find((/** @type {any} */ one) => one.name === name)?.from;
-    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}${from ? " (stored: run in Python)" : ""}`;
+    const stored = motions.find((/** @type {any} */ one) => one.name === name)?.why;
+    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}${stored ? " (stored: run in Python)" : ""}`;
     entry.classList.toggle("lost", name in lost);
     if (name in lost) find(`.legend .method-${MARKS[name]} .figure`).textContent = lost[name];
   }
@@ -163,7 +163,9 @@ function statusOf({ exact, motions, versions, release }, missed) {
   const own = exact.computed ? `The page computes this exact motion itself${error}. ` : "";
   const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) =>
     `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python differ by at most ${told(by)} m or rad.`);
-  return own + apart.join(" ");
+  const stored = motions.filter((/** @type {any} */ each) => each.why).map((/** @type {any} */ { name, why }) =>
+    `${NAMES[name]}: ${why}. The picture shows the stored motion of Python.`);
+  return own + [...apart, ...stored].join(" ");
 }
 
 /** Show an experiment in the picture, with the positions of sliders that differ from the experiment's start.

@@ -53,7 +53,7 @@ async function answer(setting, engines, quantities) {
     const found = kept && why ? { pose: kept[0], twist: kept[1] } : name === "munk" ? runMunk(engines.munk, run) : runMujoco(engines.mujoco, run);
     const pose = finite(found.pose);
     motions.push({
-      ...found, name, pose, milliseconds: performance.now() - begin, from: why ? "Python" : "",
+      ...found, name, pose, milliseconds: performance.now() - begin, why: kept ? why : "",
       apart: kept && !why ? pose.reduce((most, value, index) => Math.max(most, Math.abs(value - kept[0][index])), 0) : null,
       error: errors(exact.pose, pose, scene.bodies.length, run.samples + 1)[scene.measure].reduce((a, b) => Math.max(a, b), 0),
     });
