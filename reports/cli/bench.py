@@ -10,7 +10,7 @@ import typer
 
 from engines import method_name
 from engines.registry import ENGINES
-from reports.bench import (
+from reports.bench.times import (
     COMMAND_TURNS,
     WORLD_COUNTS,
     measure_command,

@@ -8,8 +8,15 @@ from engines.lagrange import TRUTH, loading
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import SquareOnCatenaries
-from reports import bench
-from reports.bench import measure_command, measure_grid, measure_judge, measure_loops, measure_truths, measure_worlds
+from reports.bench import times
+from reports.bench.times import (
+    measure_command,
+    measure_grid,
+    measure_judge,
+    measure_loops,
+    measure_truths,
+    measure_worlds,
+)
 from reports.cli.bench import _print_worlds
 from reports.model.cells import Cell
 from reports.model.ending import BadInput
@@ -63,7 +70,7 @@ def test_a_program_of_many_worlds_is_compared_with_the_judge_and_left_out_where_
         poses[-1, 0, 2] += 0.25
         return poses, 1e3 * len(mechanisms)
 
-    monkeypatch.setattr(bench, "registered_by_key", lambda group, kind: {"toy": run_worlds})
+    monkeypatch.setattr(times, "registered_by_key", lambda group, kind: {"toy": run_worlds})
     monkeypatch.setattr(registry, "INSTALLED", (Toy(),))
     judge, found, *later = measure_worlds((2, 3), 10)
     assert (judge.worlds, found.worlds) == (2, 2)

@@ -36,7 +36,7 @@ from reports.site.folder import MARKER, compressed_size, server
 BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
 TURNS = 7  # Number of runs of each loop. Two loops run alternately, so a slow period of the machine affects both.
 COMMAND_TURNS = 3
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 LESSON, LESSON_SCENE, LESSON_STEP = "lessons/four_bar.html", 1, 4e-3  # Page, index of the scene, and step [s].
 # The time of the first contentful paint of a page, as the browser reports it [ms].
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
