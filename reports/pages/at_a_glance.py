@@ -60,14 +60,14 @@ def _least_error(line: EngineLine | None) -> str:
 
 
 def _order(line: EngineLine | None) -> str:
-    """The order of convergence of an engine as shipped, its plateau, or a dash."""
+    """The order of convergence of an engine as shipped, its plateau, or a dash. Several methods give the best order."""
     column = Column.SHIPPED if line is not None and Column.SHIPPED in line.columns else Column.WHOLE
     if line is None or column not in line.columns:
         return DASH
     rows = [row for _, of_method in line.columns[column] for row in of_method]
-    for sweep in sweeps(rows, (quantity(line.quantity),)):
-        if sweep.verdict is Verdict.PLATEAU:
-            return f"plateau {number(sweep.plateau)}"
-        if sweep.points >= ENOUGH_POINTS:
-            return f"{sweep.order:.1f}"
-    return DASH
+    found = sweeps(rows, (quantity(line.quantity),))
+    plateaus = [sweep.plateau for sweep in found if sweep.verdict is Verdict.PLATEAU]
+    orders = [sweep.order for sweep in found if sweep.verdict is not Verdict.PLATEAU and sweep.points >= ENOUGH_POINTS]
+    if orders:
+        return f"{max(orders):.1f}"
+    return f"plateau {number(min(plateaus))}" if plateaus else DASH

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
+from engines.contract import CLAIM
 from reports.model.outcomes import SILENT, Outcome
 from reports.model.page import Failure, Material, Page
 from reports.pages.atlas.page import stored_columns
@@ -67,7 +68,9 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
         "at": lambda method, step: rows(method).near(step),
         "ends": lambda method: [str(row.outcome) for row in rows(method)],
         "comparable": lambda method: [Outcome(row.outcome).comparable for row in rows(method)],
-        "unresolved": lambda method: all("unresolved" in f"{row.outcome} {row.sentence}" for row in rows(method)),
+        "unresolved": lambda method: all(
+            row.outcome == Outcome.UNRESOLVED or row.estimate > CLAIM for row in rows(method)
+        ),
         "estimated": lambda method: all(row.estimate > row.angle for row in rows(method)),
         "silent": lambda: all(SILENT in row.sentence for row in experiment),
         "smallest": lambda name, *methods: min(errors(methods, name)),
