@@ -88,9 +88,7 @@ def split_error(
     horizon: float = np.inf,
 ) -> ErrorParts:
     """Split the error of the user's run. smaller: runs of the same settings at smaller steps, the largest step first.
-
-    tolerance: relative tolerance of the integration with soft joints. Samples after `horizon` [s] do not count.
-    """
+    tolerance: relative tolerance of the integration with soft joints. Samples after `horizon` [s] do not count."""
     mechanism, model = reading.mechanism, reading.model
     declared, softness = truth.pose, 0.0 if model.declares else float("nan")
     early = truth.t <= horizon
@@ -167,7 +165,6 @@ class CheckResult:
 
     @property
     def _hinges_instead(self) -> str:
-        """A hint for a mechanism that welds lock: the user perhaps meant hinges."""
         if not (welds := self.facts.locking_welds):
             return ""
         hinge = "connect, which holds a point and no angle," if self.reading.model.engine == "MuJoCo" else "a hinge"
@@ -211,11 +208,9 @@ def check(
     plan: SweepPlan | None = None,
     has_tolerance: bool = True,
 ) -> CheckResult:
-    """Check a model for a motion of `duration` [s]; `on_progress` is called with the name of each stage.
-
-    Raises Unsupported if the motion reaches an obstacle such as a joint limit, which ideal mechanisms do not have.
-    Raises InvalidMechanism if the ideal motion can't be computed.
-    """
+    """Check a model for a motion of `duration` [s]; `on_progress` is called with the name of each stage. Raises
+    Unsupported if the motion reaches an obstacle such as a joint limit, which ideal mechanisms do not have. Raises
+    InvalidMechanism if the ideal motion can't be computed."""
     mechanism, model, plan = reading.mechanism, reading.model, plan or SweepPlan(SWEEP_BUDGET)
     if not 0 < model.dt < float("inf"):
         raise InvalidMechanism(f"the model's own step is {model.dt:g} s; it must be a finite time above zero")
@@ -254,16 +249,13 @@ def check(
 
 
 def _below(at: float) -> float:
-    """A time [s] slightly before `at`, rounded down to two digits."""
     size = 10.0 ** np.floor(np.log10(at) - 1)
     return float(np.floor(at * 0.999 / size) * size)
 
 
 def apply_advised(result: CheckResult, target: Path) -> Applied:
     """Write the model with the advised settings and run it. A model that meets the tolerance is written unchanged.
-
-    Raises Unsupported if the file can't be written. The target is then unchanged.
-    """
+    Raises Unsupported if the file can't be written. The target is then unchanged."""
     source, advised = result.reading.source, result.advised
     if source is None:
         raise Unsupported("--apply: this model has no text to be changed; give its MJCF file or its script")

@@ -97,7 +97,6 @@ def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, du
 
 
 def _engine_named(name: str) -> Engine:
-    """The engine that "NAME" or "NAME VARIANT" names. Raises ValueError, also for an engine that is not installed."""
     engines = {method_name(engine): engine for engine in (*registry.ENGINES, *registry.OTHERS)}
     engine = engines.get(name) or engines.get(f"{name} default")
     if engine is None:

@@ -57,7 +57,6 @@ def compute_facts(mechanism: Mechanism, motion: Trajectory) -> Facts:
 
 
 def _locking_welds(mechanism: Mechanism) -> tuple[str, ...]:
-    """The welds of a mechanism that is locked but would have a freedom with hinges instead of the welds."""
     hinges = tuple(
         Pin(joint.name, joint.first, joint.second, joint.first_point, joint.second_point)
         if isinstance(joint, Weld)
@@ -87,10 +86,8 @@ def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: in
 
 
 def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tuple[tuple[float, str], ...]:
-    """(time [s], body) when a body on the ground reverses its direction while another body moves.
-
-    The result is empty for mechanisms with more than one freedom or without loops.
-    """
+    """(time [s], body) when a body on the ground reverses its direction while another body moves. The result is empty
+    for mechanisms with more than one freedom or without loops."""
     loops = mechanism.row_count > 2 * len(mechanism.bodies)
     if freedoms > 1 or not loops:
         return ()
@@ -114,10 +111,8 @@ def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tu
 
 
 def _stiffest_mode(mechanism: Mechanism) -> float:
-    """Largest absolute eigenvalue [1/s] of the equations of motion, linearised at the initial pose at rest.
-
-    Returns 0 for no freedom and for more than MOST_DIRECTIONS freedoms, and NaN if an acceleration is not finite.
-    """
+    """Largest absolute eigenvalue [1/s] of the equations of motion, linearised at the initial pose at rest. Returns 0
+    for no freedom and for more than MOST_DIRECTIONS freedoms, and NaN if an acceleration is not finite."""
     count = mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     rows = mechanism.rows(mechanism.pose) if mechanism.row_count else np.zeros((0, count))

@@ -34,11 +34,9 @@ def ideal_motion(
     tolerance: float = np.inf,
     on_progress: Callable[[str], None] = lambda stage: None,
 ) -> IdealMotion:
-    """The result of `reference_motion`, in numpy if this is faster than compilation, else in machine code.
-
-    A motion from numpy is accepted only if the judge resolves the whole motion without a warning. So every motion has
-    the accuracy that the judge claims.
-    """
+    """The result of `reference_motion`, in numpy if this is faster than compilation, else in machine code. A motion
+    from numpy is accepted only if the judge resolves the whole motion without a warning. So every motion has the
+    accuracy that the judge claims."""
     on_progress("following the ideal motion")
     if is_cold(adaptive=True):
         begin = time.process_time()

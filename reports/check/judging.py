@@ -31,10 +31,8 @@ def accelerations(
     mechanism: Mechanism, pose: Array, twist: Array, t: float, give: RowRegularisation | None = None
 ) -> Array:
     """Accelerations (bodies, 3) [m/s^2, rad/s^2] with ideal joints, or with soft joints if `give` is a regularisation.
-
     Soft rows satisfy J a = b - damping slip - stiffness gap - compliance F. The bias b is that of the mechanism, or
-    `give.initial_bias` unless this is NaN.
-    """
+    `give.initial_bias` unless this is NaN."""
     if give is None or not mechanism.row_count:
         return constrained_acceleration(mechanism, pose, twist)[0]
     bias = mechanism.bias(pose, twist)
@@ -51,11 +49,9 @@ def soft_motion(
     tolerance: float = SOFT_TOLERANCE,
     twist: Array | None = None,
 ) -> Array:
-    """Poses (times, bodies, 3) of a motion with soft joints. Poses are NaN after the integration has failed.
-
-    `give` returns the regularisation of the rows from the gap and the pose. twist: initial velocities (bodies, 3), by
-    default those of the mechanism. The method is LSODA, since the equations are stiff.
-    """
+    """Poses (times, bodies, 3) of a motion with soft joints. Poses are NaN after the integration has failed. `give`
+    returns the regularisation of the rows from the gap and the pose. twist: initial velocities (bodies, 3), by default
+    those of the mechanism. The method is LSODA, since the equations are stiff."""
     count = mechanism.pose.size
     lengths = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])
@@ -114,10 +110,8 @@ class IdealMotion:
 def reference_motion(
     mechanism: Mechanism, samples: int, spacing: float, tolerance: float = np.inf, judge: Judge = TRUTH
 ) -> IdealMotion:
-    """The motion with ideal joints, until the estimated error exceeds the share JUDGE_SHARE of the tolerance.
-
-    Raises InvalidMechanism if the integration fails, or if the first sample after the start is inaccurate.
-    """
+    """The motion with ideal joints, until the estimated error exceeds the share JUDGE_SHARE of the tolerance. Raises
+    InvalidMechanism if the integration fails, or if the first sample after the start is inaccurate."""
     single_run = Lagrange(tolerance=judge.tolerance, compiled=judge.compiled)
 
     def by_multipliers(other: Mechanism) -> Trajectory:
@@ -159,7 +153,6 @@ def reference_motion(
 
 
 def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> NDArray[np.bool_]:
-    """Whether the error and the gaps are below the share JUDGE_SHARE of the tolerance, for each time."""
     off = pose_distance(mechanism, motion.pose + np.asarray(motion.estimate), motion.pose)
     if mechanism.row_count:
         gap = np.abs(np.nan_to_num(mechanism.joint_rows.gap(motion.pose, motion.t)))
@@ -169,9 +162,7 @@ def _is_accurate(mechanism: Mechanism, motion: Trajectory, tolerance: float) -> 
 
 def _first_exponential(growth: Array, expected: Array, size: float) -> int:
     """Index of the first sample with more than the expected growth, or the number of samples without such a sample.
-
-    Growth that ends before the last sample counts only if the disturbance has exceeded LINEAR_LIMIT.
-    """
+    Growth that ends before the last sample counts only if the disturbance has exceeded LINEAR_LIMIT."""
     beyond = growth > expected
     stays = beyond[-1] or np.any(beyond & (growth * size > LINEAR_LIMIT))
     return int(np.argmax(beyond)) if stays else len(beyond)
@@ -243,11 +234,9 @@ class Errors:
 
 
 def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jumps: bool = False) -> Errors:
-    """Errors of a run at the samples of the reference motion.
-
-    jumps: whether the joints do not allow the initial velocities. The ideal motion changes these velocities by an
-    impulse at t = 0, but a run needs one or more steps. So forces and energy at the first two samples are not compared.
-    """
+    """Errors of a run at the samples of the reference motion. jumps: whether the joints do not allow the initial
+    velocities. The ideal motion changes these velocities by an impulse at t = 0, but a run needs one or more steps. So
+    forces and energy at the first two samples are not compared."""
     difference = run.pose - truth.pose
     angle = np.abs(difference[..., 2]).max(axis=1)
     position = np.hypot(difference[..., 0], difference[..., 1]).max(axis=1)
@@ -316,11 +305,9 @@ def find_opening(mechanism: Mechanism, run: Trajectory) -> Opening | None:
 
 
 def refuse_disagreement(reading: Reading) -> float:
-    """Relative difference of the accelerations at t = 0 between the engine and the judge.
-
-    The judge uses the declared softness of the engine. Raises Unsupported if the difference exceeds START_AGREEMENT.
-    The message names an element of the model if the accelerations agree without this element.
-    """
+    """Relative difference of the accelerations at t = 0 between the engine and the judge. The judge uses the declared
+    softness of the engine. Raises Unsupported if the difference exceeds START_AGREEMENT. The message names an element
+    of the model if the accelerations agree without this element."""
     mechanism, model = reading.mechanism, reading.model
     give = model.regularisation(np.zeros(mechanism.row_count), mechanism.pose) if model.has_soft_joints else None
     expected = accelerations(mechanism, mechanism.pose, mechanism.twist, 0.0, give)

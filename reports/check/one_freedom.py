@@ -39,9 +39,7 @@ def has_one_freedom(mechanism: Mechanism) -> bool:
 
 def motion_along_curve(mechanism: Mechanism, t: Array, tolerance: float) -> Trajectory:
     """The motion of a mechanism with one freedom at times t (times,) [s], or NaN after the integration has failed.
-
-    tolerance: relative error of a step.
-    """
+    tolerance: relative error of a step."""
     states, tangent, count = _states(mechanism, t, tolerance), _Tangent(mechanism), mechanism.pose.size
     pose, twist, acceleration = (np.full((len(t), *mechanism.pose.shape), np.nan) for _ in range(3))
     sound = np.isfinite(states).all(axis=1)
@@ -80,7 +78,6 @@ class _Tangent:
 
 
 def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
-    """The states q, v (times, 3 bodies + 1), or NaN after the integration has failed."""
     tangent, count = _Tangent(mechanism), mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     start = float(tangent.last @ (mechanism.inertias.reshape(-1) * mechanism.twist.reshape(-1)))

@@ -21,10 +21,8 @@ MAX_DURATION = 1000.0  # Longest duration of a motion [s].
 
 @dataclass(frozen=True)
 class CheckRequest:
-    """The options of `crosscheck check` and of `planar_crosscheck.check`.
-
-    `without`, `key` and `step` are described in `ReadingTerms`, `quick` and `everything` in `SweepPlan`.
-    """
+    """The options of `crosscheck check` and of `planar_crosscheck.check`. `without`, `key` and `step` are described in
+    `ReadingTerms`, `quick` and `everything` in `SweepPlan`."""
 
     word: str  # The model as on the command line; a path is relative to `folder`.
     folder: str

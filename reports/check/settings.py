@@ -62,11 +62,9 @@ def run_settings_sweep(
     plan: SweepPlan,
     tolerance: float,
 ) -> list[SettingRun]:
-    """Run the documented settings, beginning with large steps. In the result the user's settings come first.
-
-    The estimated CPU time of a setting is the number of steps times the measured time of a step. A setting is left out
-    if this time is too long.
-    """
+    """Run the documented settings, beginning with large steps. In the result the user's settings come first. The
+    estimated CPU time of a setting is the number of steps times the measured time of a step. A setting is left out if
+    this time is too long."""
     model = reading.model
 
     def result(change: Change, run: Trajectory) -> SettingRun:
@@ -104,7 +102,6 @@ def run_settings_sweep(
 
 
 def _cost_limit(table: list[SettingRun], tolerance: float) -> float:
-    """CPU time [s] of the cheapest setting with a tenth of the advised setting's error, or infinity."""
     advised = cheapest(table, tolerance)
     decade = None if advised is None else cheapest(table, advised.error / 10)
     return float("inf") if decade is None else decade.cost
@@ -119,7 +116,6 @@ def _quick_choice(changes: list[Change]) -> list[int]:
 
 
 def _has_plateaued(table: list[SettingRun]) -> bool:
-    """Whether the last two reductions of the step did not reduce the error, by HELPFUL_RATIO and SATURATED_CHANGE."""
 
     def stays(before: float, after: float) -> bool:
         return (

@@ -118,7 +118,6 @@ def _forces(result: CheckResult) -> str:
 
 
 def _sensitivity(result: CheckResult) -> str:
-    """A sentence on the divergence of neighbouring motions and its effect on the error."""
     judge = result.judge
     if result.facts.locked:
         return "nothing can move: the joints leave no freedom, and the error is how far they give way"
@@ -258,7 +257,6 @@ def _opening(result: CheckResult) -> str:
 
 
 def _table(result: CheckResult) -> Section:
-    """The table of all settings that were tried, with only one of several settings with equal errors."""
     groups: dict[tuple[str, str], list[SettingRun]] = {}
     for setting in result.table:
         groups.setdefault((number(setting.error), number(setting.reaction)), []).append(setting)

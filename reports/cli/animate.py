@@ -57,7 +57,6 @@ def animate(
 
 
 def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engine]:
-    """The methods with these names. Raises BadInput for an unknown name and for too many names."""
     if words is None:
         return [engine for engine in engines if engine.variant == "default"][:MOST_SHOWN]
     known = {method_name(engine): engine for engine in engines}
@@ -70,7 +69,6 @@ def _methods(words: list[str] | None, engines: tuple[Engine, ...]) -> list[Engin
 
 
 def _refuse_bad(path: Path, kind: str, force: bool) -> None:
-    """Raise BadInput or FileTrouble before engines run if the picture can't be made or written."""
     refuse_existing([path], "--output", force)
     if kind == "mp4":
         ffmpeg()

@@ -77,10 +77,8 @@ def check(
         bool, typer.Option("--force", help="Let --apply replace a file that is there, even the model.")
     ] = False,
 ) -> None:
-    """Check a model of your own against ideal joints: how wrong your settings are, why, and which ones suffice.
-
-    The exit status is 1 if the model misses the given tolerance.
-    """
+    """Check a model of your own against ideal joints: how wrong your settings are, why, and which ones suffice. The
+    exit status is 1 if the model misses the given tolerance."""
     if as_schema:
         from reports.check.document import schema  # This imports engines.
 
@@ -114,7 +112,6 @@ def check(
 
 
 def _refuse_missed(answers: Answers, is_folder: bool) -> None:
-    """Raise BadInput if --apply has failed. Raise Broken if a model misses the tolerance."""
     reports = [answer for _, answer in answers if isinstance(answer, CheckReport)]
     for report in reports:
         if report.trouble:
@@ -128,7 +125,6 @@ def _refuse_missed(answers: Answers, is_folder: bool) -> None:
 
 
 def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everything: bool, force: bool) -> None:
-    """Raise BadInput or FileTrouble for invalid options before a model runs."""
     model = request.word
     if not model:
         raise BadInput("no model was given; give model.xml, model.urdf, script.py or a folder of them")
@@ -152,7 +148,6 @@ def _refuse_bad(request: CheckRequest, files: Mapping[str, Path | None], everyth
 
 
 def _models(model: str) -> list[str]:
-    """The path of the model, or the paths of all models in a folder. Raises BadInput for a folder without models."""
     if not Path(model).is_dir():
         return [model]
     paths = [str(path) for path in many.find_models(Path(model))]
@@ -162,7 +157,6 @@ def _models(model: str) -> list[str]:
 
 
 def _answers(requests: list[CheckRequest], limit: float) -> Answers:
-    """Run the checks in supervised processes and print the progress on stderr. Raises WorkersLost."""
     answers: dict[str, CheckReport | Refused] = {}
     with temporary_folder() as aside:
         progress = _Progress(aside / "progress")
@@ -205,7 +199,6 @@ class _Progress:
 
 
 def _write(model: str, answers: Answers, files: Mapping[str, Path | None], seconds: float) -> None:
-    """Write the files of --html, --markdown and --junit. Raises FileTrouble."""
     from reports.check import rendering  # Imported here, so that invalid options are refused sooner.
     from reports.write.tables import markdown as table
 
@@ -230,7 +223,6 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
 
 
 def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> None:
-    """Print the report or the JSON document of one model. Raises BadInput if the model was refused."""
     from reports.check import rendering
 
     if isinstance(answer, Refused):

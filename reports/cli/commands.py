@@ -73,7 +73,6 @@ def invoke(arguments: Sequence[str]) -> int:
 
 
 def _refuse_repeated(parameters: Sequence[Any]) -> None:
-    """Raise BadInput if an option for one value is repeated, since the parser would use only the last value."""
     for parameter in parameters:
         if parameter.param_type_name == "option" and not parameter.multiple and parameters.count(parameter) > 1:
             words = "/".join((*parameter.opts, *parameter.secondary_opts))

@@ -121,7 +121,6 @@ def _cells(difference: Difference) -> list[str | float]:
 
 
 def _reasons(found: RowComparison) -> tuple[Counter[str], Counter[str]]:
-    """For each of two builds: reason of a changed outcome -> number of cells with this reason."""
 
     def reason(row: Measurement) -> str:
         sentence = " ".join(row.engine_sentence.split())[:LONGEST_REASON]

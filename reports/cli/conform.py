@@ -85,7 +85,6 @@ def _with_status(answers: Answers, status: str) -> list[tuple[ConformanceCase, C
 
 
 def _places(answers: Answers) -> str:
-    """The beginning of a sentence, with the mechanisms and their joints."""
     names = [f"{case.world.name} ({', '.join(case.world.kinds)})" for case, _ in answers if case.world is not None]
     return f"in {'; '.join(names)}: " if names else ""
 
@@ -117,7 +116,6 @@ class Question:
 
 @cache
 def _cases(named: Named, index: int) -> tuple[ConformanceCase, ...]:
-    """The cached cases of an engine, so that the checks of an engine share runs."""
     return tuple(cases(named.engines()[index]))
 
 
@@ -133,10 +131,8 @@ def ask(question: Question) -> tuple[ConformanceResult, ...]:
 def asked(
     named: Named, limit: float = TIME_LIMIT
 ) -> Iterator[tuple[Engine, Iterator[tuple[ConformanceCase, ConformanceResult]]]]:
-    """Yield each named engine with the results of its checks in order. Raises BadInput and WorkersLost.
-
-    limit: CPU seconds of a check without the time to build models. One worker runs all checks, which share their runs.
-    """
+    """Yield each named engine with the results of its checks in order. Raises BadInput and WorkersLost. limit: CPU
+    seconds of a check without the time to build models. One worker runs all checks, which share their runs."""
     for number, engine in enumerate(named.engines()):
         yield engine, _answers(named, number, engine, limit + MODELS * engine.build_time)
 

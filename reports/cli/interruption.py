@@ -27,7 +27,6 @@ class Interrupted(KeyboardInterrupt):
 
 @contextmanager
 def _handled(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
-    """A context in which the signals call the handler. Ignored signals stay ignored, for example after nohup."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -59,9 +58,7 @@ def ending_at_once() -> Any:
 @contextmanager
 def delayed_signals() -> Iterator[Callable[[], None]]:
     """A context that yields a function `check`. After a signal, `check` and the end of the context raise Interrupted.
-
-    So work stops only where it can be continued later. A second signal raises Interrupted immediately.
-    """
+    So work stops only where it can be continued later. A second signal raises Interrupted immediately."""
     pressed: list[int] = []
 
     def keep(number: int, frame: FrameType | None) -> None:

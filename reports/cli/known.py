@@ -87,7 +87,6 @@ class Registry:
 def _new(
     values: Iterable[Any], known: Iterable[Any], name: Callable[[Any], str], reference: Reference
 ) -> tuple[Any, ...]:
-    """The values with a new name. Raises ValueError if a known value has the same name and is different."""
     by_name = {name(value): value for value in known}
     new = []
     for value in values:
@@ -101,17 +100,14 @@ def _new(
 
 
 def registered() -> Registry:
-    """The registered scenes, engines and pages. Invalid entry points are reported on stderr."""
     for line in catalogue.TROUBLES:
         said(line)
     return Registry(catalogue.SCENES, known_engines(catalogue.PAGES), catalogue.PAGES)
 
 
 def with_stored(known: Registry, texts: Iterable[str], motion: bool = False) -> Registry:
-    """The registry with the references of a store. References that can't be loaded are reported on stderr.
-
-    motion: whether the command computes the motion of scenes.
-    """
+    """The registry with the references of a store. References that can't be loaded are reported on stderr. motion:
+    whether the command computes the motion of scenes."""
     references = []
     for text in texts:
         with suppress(ValueError, TypeError):  # Another version of this suite wrote the text.
@@ -144,11 +140,9 @@ def choose(
     known: Registry | None = None,
     motion: bool = False,
 ) -> Choice:
-    """Select scenes and engines, all of them by default. Raises BadInput.
-
-    words: names of scenes or pages, or references. settings: NAME=VALUE for parameters of these scenes. known: a
-    registry, by default the registered scenes and engines. motion: whether the command computes the motion of scenes.
-    """
+    """Select scenes and engines, all of them by default. Raises BadInput. words: names of scenes or pages, or
+    references. settings: NAME=VALUE for parameters of these scenes. known: a registry, by default the registered scenes
+    and engines. motion: whether the command computes the motion of scenes."""
     known = known or registered()
     folder, values = str(Path.cwd()), _settings(settings)
     if values and not words:
@@ -198,7 +192,6 @@ def engines_named(
 
 
 def _scene_names(known: Registry, word: str) -> list[str]:
-    """The names of a page's scenes. A scene's name or a reference is returned unchanged. Raises BadInput."""
     if is_reference(word) or any(word == scene.name for scene in catalogue.SCENES):
         return [word]
     for page in known.pages:
@@ -208,7 +201,6 @@ def _scene_names(known: Registry, word: str) -> list[str]:
 
 
 def _settings(words: Sequence[str]) -> dict[str, str]:
-    """Parse NAME=VALUE into a mapping from name to value. Raises BadInput."""
     out: dict[str, str] = {}
     for word in words:
         name, _, value = (part.strip() for part in word.partition("="))
@@ -249,10 +241,8 @@ class ReferenceTrial:
 
 
 def refused(references: Sequence[Reference], motion: bool = False) -> dict[Reference, str]:
-    """Reference that can't be used -> the reason why. Raises WorkersLost.
-
-    A worker loads the references first, since code of a third party may end the process.
-    """
+    """Reference that can't be used -> the reason why. Raises WorkersLost. A worker loads the references first, since
+    code of a third party may end the process."""
     if not references or multiprocessing.parent_process() is not None:  # This process is a worker.
         return {}
     sentences = {}

@@ -65,10 +65,8 @@ AsMarkdown = Annotated[bool, typer.Option("--markdown", help="Markdown, as for a
 
 
 def refuse_existing(paths: Iterable[Path], option: str, force: bool) -> None:
-    """Raise FileTrouble if a file or link exists, unless `force` is true.
-
-    Devices and pipes are accepted, since writing does not replace them.
-    """
+    """Raise FileTrouble if a file or link exists, unless `force` is true. Devices and pipes are accepted, since writing
+    does not replace them."""
     for path in paths:
         if not force and (path.is_symlink() or path.exists()) and not is_stream(path):
             raise FileTrouble(f"{path} is there already: give another {option}, or --force to replace it")

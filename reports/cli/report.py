@@ -106,10 +106,8 @@ def material_of(page: Page, store: Store) -> Material:
 
 
 def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str, ...], str]:
-    """(material of each page, stored references, a sentence on missing cells or "").
-
-    A published report has only registered pages. Other reports also have pages for the stored references.
-    """
+    """(material of each page, stored references, a sentence on missing cells or ""). A published report has only
+    registered pages. Other reports also have pages for the stored references."""
     with Store.read(results / STORE) as store:
         references = () if publish else tuple(store.load_references())
         pages = with_stored(registered(), references, motion=True).pages
@@ -130,11 +128,8 @@ def stored_material(results: Path, publish: bool) -> tuple[Materials, tuple[str,
 
 
 def publishable(material: Materials, left: str) -> Materials:
-    """The material in which unchanged rows have the published digits.
-
-    Raises BadInput if cells are missing, if rows contradict a claim of a page, or if an engine with published rows is
-    not installed.
-    """
+    """The material in which unchanged rows have the published digits. Raises BadInput if cells are missing, if rows
+    contradict a claim of a page, or if an engine with published rows is not installed."""
     before = read_published(published())
     if absent := [registry.ABSENT[engine] for engine in before.engines if engine in registry.ABSENT]:
         raise BadInput(f"nothing is published, since rows of engines are that are not installed; {'; '.join(absent)}")
@@ -195,10 +190,8 @@ def _pages(references: tuple[str, ...]) -> dict[str, Page]:
 
 
 def drawn(material: Materials, references: Iterable[str], command: str, order: Path) -> dict[str, dict[str, str]]:
-    """Name of a page -> files of the page. Pages that workers could not render are missing.
-
-    references: references in the store. order: folder of an earlier report, whose sizes determine the order.
-    """
+    """Name of a page -> files of the page. Pages that workers could not render are missing. references: references in
+    the store. order: folder of an earlier report, whose sizes determine the order."""
 
     def size(pair: tuple[str, Material]) -> int:
         return sum(file.stat().st_size for file in order.glob(f"{pair[0]}_*.svg"))

@@ -170,9 +170,7 @@ def run_interruptible(
     crew: cluster.Workforce | None = None,
 ) -> int:
     """Run cells and tasks, show the progress, and return the number of items run. All processors are used by default.
-
-    After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt.
-    """
+    After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt."""
     by = crew or cluster.pool(None)
     if is_cold(adaptive=False) and any(map(_needs_machine_code, items)):
         print(COMPILING_NOTE, file=sys.stderr)
@@ -181,7 +179,6 @@ def run_interruptible(
 
 
 def _needs_machine_code(item: Cell | Task) -> bool:
-    """Whether the judge's code may be compiled for this item. Tasks of pages compare runs with the judge."""
     return isinstance(item, Task) or "numba" in item.engine.packages
 
 

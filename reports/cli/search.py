@@ -109,7 +109,6 @@ def search(
 
 
 def _refuse(seconds: float | None, seed: int | None, fresh: bool, published: bool, chosen: bool) -> None:
-    """Raise BadInput for options that contradict each other. chosen: whether an option selects cases."""
     if seconds is not None and not 0 < seconds < float("inf"):
         raise BadInput(f"--seconds is {seconds}; it must be a finite number greater than zero")
     if fresh and (seconds is None or published or seed is not None):

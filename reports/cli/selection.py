@@ -148,10 +148,8 @@ def left_out(
 def choose_tasks(
     scenes: Sequence[Scene], engines: Sequence[Engine], pages: Sequence[Page], full: bool
 ) -> tuple[Task, ...]:
-    """The tasks of pages that are run with these scenes. Tasks of other engines are left out.
-
-    A quick run leaves out tasks that take longer than QUICK_CELL.
-    """
+    """The tasks of pages that are run with these scenes. Tasks of other engines are left out. A quick run leaves out
+    tasks that take longer than QUICK_CELL."""
     tasks = (
         task
         for page in pages

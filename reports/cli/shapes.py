@@ -33,10 +33,8 @@ def shapes(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace files that are there.")] = False,
 ) -> None:
-    """Write the two shapes that generate a motion when the one rolls on the other.
-
-    The shapes are the centrodes of the motion, which are the curves of the instant centre in space and in the body.
-    """
+    """Write the two shapes that generate a motion when the one rolls on the other. The shapes are the centrodes of the
+    motion, which are the curves of the instant centre in space and in the body."""
     kinds = dict.fromkeys(kind or DEFAULT_KINDS)
     if unknown := [word for word in kinds if word not in WRITERS]:
         raise BadInput(f"--kind is {unknown[0]!r}; there are {', '.join(WRITERS)}")
@@ -62,7 +60,6 @@ def shapes(
 
 
 def _describe(curves: Centrodes, pair: Shapes) -> list[str]:
-    """Sentences about the lengths and the error of the shapes, and about the motion that they generate."""
     size = float(np.ptp(np.vstack([pair.space, pair.body]), axis=0).max())
     lines = [
         f"{len(curves.theta)} poses over {np.ptp(curves.theta):.4g} rad; both shapes are "

@@ -91,7 +91,6 @@ def _of_checkout(name: str) -> str:
 
 
 def _answers(terminal: Terminal, results: Path) -> dict[Motion, Answer]:
-    """The motions of the lessons. Motions that are not stored are run first."""
     wanted = tasks()
     with opened(results / STORE) as store:
         run_interruptible(terminal, store, wanted, fresh=False, limit=60.0)

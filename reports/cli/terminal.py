@@ -30,12 +30,9 @@ PULSE = 10.0  # Time [s] between two lines of progress in a file or a pipe.
 
 
 class Terminal(Console):
-    """The output of a command, with the width of the terminal, or with `width` columns in a file or a pipe.
-
-    `form` is "text", "markdown" or "json". Markdown and JSON go to standard output, and other output, such as progress,
-    then goes to standard error. The JSON document is printed at the end (`telling`). `print` raises the errors of
-    `written`.
-    """
+    """The output of a command, with the width of the terminal, or with `width` columns in a file or a pipe. `form` is
+    "text", "markdown" or "json". Markdown and JSON go to standard output, and other output, such as progress, then goes
+    to standard error. The JSON document is printed at the end (`telling`). `print` raises the errors of `written`."""
 
     def __init__(self, width: int, form: str = "text") -> None:
         super().__init__(width=None if sys.stdout.isatty() else width, stderr=form != "text")
@@ -109,9 +106,8 @@ def print_table(
     console: Terminal, title: str, header: Sequence[str], rows: Iterable[Sequence[str | float]], left: int
 ) -> None:
     """Print a table in the form of the terminal. The first `left` columns contain words, and further columns numbers.
-
-    Cells are plain text, so a unit in brackets, as in "step [s]", is not markup. rich folds a table that is too wide.
-    """
+    Cells are plain text, so a unit in brackets, as in "step [s]", is not markup. rich folds a table that is too
+    wide."""
     if console.form == "json":
         cells = [{name: plain(cell) for name, cell in zip(header, row, strict=True)} for row in rows]
         console.document["tables"].append({"title": title, "rows": cells})
@@ -153,11 +149,9 @@ def interruptible(
     fresh: bool = False,
     size: Callable[[Any], int] | None = None,
 ) -> Iterator[tuple[Sequence[Any], Callable[..., None], Callable[[list[Any]], None]]]:
-    """(items to run, done, watch) for a run that Ctrl-C may interrupt. `progress` describes done and watch.
-
-    words: plural noun for the items. fresh: whether stored items are run again. size: function that returns the number
-    of cases in an item. After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt.
-    """
+    """(items to run, done, watch) for a run that Ctrl-C may interrupt. `progress` describes done and watch. words:
+    plural noun for the items. fresh: whether stored items are run again. size: function that returns the number of
+    cases in an item. After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt."""
     if sentence := mislabelled():
         raise BadInput(sentence)
     with delayed_signals() as check:

@@ -117,7 +117,6 @@ def progress_of(console: Terminal, check: Callable[[], None]) -> Progress:
 def _versions_by_engine(
     engine: str | None, numbers: list[str] | tuple[str, ...], everything: bool
 ) -> dict[str, tuple[str, ...]]:
-    """Engine -> versions. Raises BadInput for contradictory arguments or an unknown engine."""
     if everything:
         if engine is not None:
             raise BadInput("--all runs the versions of every engine; leave the engine out")

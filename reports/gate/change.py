@@ -42,10 +42,8 @@ class BadBaseline(ValueError):
 
 @dataclass(frozen=True)
 class Old:
-    """A cell of a baseline.
-
-    reaction_rows: constraint rows with a reported reaction. cpu: CPU seconds per simulated second, or NaN if unknown.
-    """
+    """A cell of a baseline. reaction_rows: constraint rows with a reported reaction. cpu: CPU seconds per simulated
+    second, or NaN if unknown."""
 
     outcome: Outcome
     errors: Mapping[str, float]
@@ -64,10 +62,8 @@ class Baseline:
 
     @property
     def same_versions(self) -> bool:
-        """Whether the installed packages have the versions of the baseline, or these versions are unknown.
-
-        Rows with the same versions are checked by `change`, and other rows by `drift`.
-        """
+        """Whether the installed packages have the versions of the baseline, or these versions are unknown. Rows with
+        the same versions are checked by `change`, and other rows by `drift`."""
         return self.versions == "" or still_installed(self.versions)
 
 
@@ -90,15 +86,12 @@ def identity(row: Measurement) -> Identity:
 
 
 def _identity(row: Mapping[str, str]) -> Identity:
-    """The key of a CSV row's cell. Raises ValueError or TypeError for a damaged row."""
     return row["scene"], f"{row['engine']} {row['variant']}", int(row["samples"]), int(row["every"])
 
 
 def _read_timings(path: Path) -> tuple[str, dict[Identity, float]]:
-    """(versions, cell -> CPU seconds per simulated second) from the timings.csv beside an errors.csv.
-
-    If the file cannot be read, the versions are empty and cells are missing.
-    """
+    """(versions, cell -> CPU seconds per simulated second) from the timings.csv beside an errors.csv. If the file
+    cannot be read, the versions are empty and cells are missing."""
     seconds: dict[Identity, float] = {}
     remarks: list[str] = []
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
@@ -144,11 +137,9 @@ Part = TypeVar("Part")
 
 @dataclass(frozen=True)
 class Altered(EngineWrapper):
-    """An engine that builds `change(mechanism)` with the wrapped engine.
-
-    The name and the declarations, for the unchanged mechanism, are those of the wrapped engine. `change` is a
-    callable frozen dataclass, so it can be compared, printed and sent to other processes.
-    """
+    """An engine that builds `change(mechanism)` with the wrapped engine. The name and the declarations, for the
+    unchanged mechanism, are those of the wrapped engine. `change` is a callable frozen dataclass, so it can be
+    compared, printed and sent to other processes."""
 
     engine: Engine
     change: Callable[[Mechanism], Mechanism]
@@ -174,11 +165,9 @@ class Altered(EngineWrapper):
 
 @dataclass(frozen=True)
 class Nudge:
-    """A random change of masses, inertias and vectors of a mechanism by -1, 0 or 1 rounding.
-
-    Scalars of joints and forces, such as a gear's ratio or an angle, are not changed. Engines treat some values, such
-    as 1, specially. Zeros remain zero.
-    """
+    """A random change of masses, inertias and vectors of a mechanism by -1, 0 or 1 rounding. Scalars of joints and
+    forces, such as a gear's ratio or an angle, are not changed. Engines treat some values, such as 1, specially. Zeros
+    remain zero."""
 
     seed: int
 
@@ -225,11 +214,9 @@ DEAR = 10.0
 
 
 def change(row: Measurement, old: Old, nudged: Sequence[Measurement] = (), amplified: float = 1.0) -> tuple[Check, ...]:
-    """The checks that a row with the baseline's versions has equal numbers within rounding.
-
-    nudged: rows of the cell with mechanisms changed by one rounding. The bound is the sum of `rounding_tolerance` and
-    of the largest difference to these rows times NUDGE_ROOM. amplified: see `ConvergenceOrder`.
-    """
+    """The checks that a row with the baseline's versions has equal numbers within rounding. nudged: rows of the cell
+    with mechanisms changed by one rounding. The bound is the sum of `rounding_tolerance` and of the largest difference
+    to these rows times NUDGE_ROOM. amplified: see `ConvergenceOrder`."""
     if not _has_numbers(row.outcome, old.outcome):
         same = row.outcome == old.outcome or any(other.outcome == old.outcome for other in nudged)
         return (_outcome(row, old, same),)
@@ -255,11 +242,8 @@ def _has_numbers(now: str, before: str) -> bool:
 
 
 def drift(row: Measurement, old: Old) -> tuple[Check, ...]:
-    """The checks of a row with versions other than the baseline's.
-
-    An error may not become NaN or exceed WORSE times the baseline's error. The outcome must be equal or become
-    comparable.
-    """
+    """The checks of a row with versions other than the baseline's. An error may not become NaN or exceed WORSE times
+    the baseline's error. The outcome must be equal or become comparable."""
     if not (Outcome(row.outcome).comparable and old.outcome.comparable):
         return (_outcome(row, old, row.outcome == old.outcome or Outcome(row.outcome).comparable),)
     out = []
@@ -319,10 +303,8 @@ def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
 
 
 def cost(pairs: Iterable[tuple[Measurement, Old]]) -> float:
-    """The total CPU time divided by that of the baseline, or NaN if no cell has both times.
-
-    Long runs dominate the total, since a run of a millisecond cannot be timed well.
-    """
+    """The total CPU time divided by that of the baseline, or NaN if no cell has both times. Long runs dominate the
+    total, since a run of a millisecond cannot be timed well."""
     timed = [
         (row.cpu, old.cpu)
         for row, old in pairs

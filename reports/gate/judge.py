@@ -51,10 +51,8 @@ TABLEAUS: dict[int, Tableau] = {
 
 
 def giving_way(mechanism: Mechanism, soft: Regularisation) -> NDArray[np.bool_]:
-    """The mask (rows,) of the regularised rows. A drive is regularised only if its row has a compliance.
-
-    A drive without a compliance prescribes only the rate, and no spring acts on the angle.
-    """
+    """The mask (rows,) of the regularised rows. A drive is regularised only if its row has a compliance. A drive
+    without a compliance prescribes only the rate, and no spring acts on the angle."""
     return np.array(soft.rows) & ((mechanism.rate == 0) | (soft.compliance > 0))
 
 
@@ -101,10 +99,8 @@ def _compiled(
     project: bool,
 ) -> Trajectory | None:
     """The motion by compiled steps. The result is None without numba, for dependent ideal rows, and after divergence.
-
     Regularised rows may be dependent, since their compliances make the system regular. Compiled steps do not project
-    regularised joints.
-    """
+    regularised joints."""
     machine = _machine(mechanism, soft)
     if machine is None or (project if soft is not None else machine.has_dependent_rows):
         return None
@@ -119,7 +115,6 @@ def _compiled(
 
 
 def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel | None:
-    """The compiled mechanism with the regularisation `soft`, or None without numba."""
     machine = CompiledModel.of(mechanism) if installed() else None
     if machine is not None and soft is not None:
         machine.regularise(soft, giving_way(mechanism, soft))
@@ -173,10 +168,8 @@ def in_numpy(
     project: bool = False,
     least: float = LEAST_INVERSE_INERTIA,
 ) -> Trajectory:
-    """The motion of a mechanism at samples `spacing` [s] apart, computed in numpy.
-
-    The method of order 1 is semi-implicit Euler, which moves poses by the new velocities. This method is not compiled.
-    """
+    """The motion of a mechanism at samples `spacing` [s] apart, computed in numpy. The method of order 1 is
+    semi-implicit Euler, which moves poses by the new velocities. This method is not compiled."""
     dt, dynamics = spacing / every, dynamics_of(mechanism, soft, least)
     step = semi_implicit_euler(dynamics) if order == 1 else runge_kutta(dynamics, TABLEAUS[order])
     poses = np.full((samples + 1, *mechanism.pose.shape), np.nan)

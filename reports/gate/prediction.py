@@ -113,11 +113,8 @@ class Prediction:
         return self._error_of_slip(quantity, gap * softness.damping)
 
     def spring_transient_error(self, quantity: str, softness: Regularisation | None) -> float:
-        """The error during the initial transient of a method's springs.
-
-        If a critically damped spring with stiffness k [1/s^2] opens to the gap g [m], its largest speed is
-        g sqrt(k) / e.
-        """
+        """The error during the initial transient of a method's springs. If a critically damped spring with stiffness k
+        [1/s^2] opens to the gap g [m], its largest speed is g sqrt(k) / e."""
         if softness is None or softness.compliance == 0:
             return 0.0
         return self._error_of_slip(
@@ -147,11 +144,8 @@ def scaled_softness_error(
     softness: Regularisation | None,
     holonomic: Sequence[bool],
 ) -> float:
-    """The error that a regularisation causes, scaled from the judge's errors `soft`.
-
-    holonomic: mask of the rows that constrain positions. The gap of these rows depends on the stiffness, and the slip
-    of other rows on the damping.
-    """
+    """The error that a regularisation causes, scaled from the judge's errors `soft`. holonomic: mask of the rows that
+    constrain positions. The gap of these rows depends on the stiffness, and the slip of other rows on the damping."""
     if softness is None:
         return 0.0
     stiff, damped = STIFFNESS / softness.stiffness, DAMPING / softness.damping
@@ -170,7 +164,6 @@ def scaled_softness_error(
 
 
 def _larger_finite(first: Mapping[str, float], second: Mapping[str, float]) -> Mapping[str, float]:
-    """Quantity -> the larger finite error, or infinity if neither error is finite, or NaN if both errors are NaN."""
     out = {}
     for name in QUANTITY_NAMES:
         known = [value for value in (first[name], second[name]) if not math.isnan(value)]
@@ -192,11 +185,9 @@ def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[SoftKind]:
 
 @cache
 def prediction(scene: Scene, soft: frozenset[SoftKind] = frozenset()) -> Prediction:
-    """The prediction for a scene, which takes about two seconds and is cached in this process.
-
-    The judge runs with and without projection, and the larger error counts. In a prescribed motion projection removes
-    the whole error. Without projection the constraints drift at singular positions.
-    """
+    """The prediction for a scene, which takes about two seconds and is cached in this process. The judge runs with and
+    without projection, and the larger error counts. In a prescribed motion projection removes the whole error. Without
+    projection the constraints drift at singular positions."""
     second = fourth = dict.fromkeys(QUANTITY_NAMES, math.inf)
     every = REFINEMENTS[0]
     for every in REFINEMENTS:
@@ -266,10 +257,8 @@ def unit_softness_errors(scene: Scene, rows: tuple[bool, ...], complete: bool) -
 
 
 def _order_errors(scene: Scene, order: int, every: int) -> Mapping[str, float]:
-    """Quantity -> the larger error of the runs with and without projection.
-
-    A run with an angle error above SATURATED is ignored unless both runs have such an error.
-    """
+    """Quantity -> the larger error of the runs with and without projection. A run with an angle error above SATURATED
+    is ignored unless both runs have such an error."""
     runs = [errors(scene, order, every, project=project) for project in (False, True)]
     followed = [run for run in runs if run["angle"] <= SATURATED] or runs
     return _larger_finite(followed[0], followed[-1])
@@ -325,10 +314,8 @@ def declared_error(answers: Mapping[Task, Answer], scene: Scene, engine: Engine,
 
 
 def all_tasks(page: Page) -> tuple[Task, ...]:
-    """The distinct tasks of a page: for its text, for its experiments, and the judge's runs for its engines.
-
-    The judge's runs follow from the engines' regularisations, so models for all scenes of the page are built.
-    """
+    """The distinct tasks of a page: for its text, for its experiments, and the judge's runs for its engines. The
+    judge's runs follow from the engines' regularisations, so models for all scenes of the page are built."""
     declared = [task for scene in page.scenes for task in soft_tasks(scene, page.engines_of(scene))]
     return tuple(dict.fromkeys([*described_tasks(page), *declared]))
 

@@ -147,7 +147,6 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _engines(words: Sequence[str]) -> tuple[tuple[Engine, ...], tuple[str, ...]]:
-    """(engines given by references, selected names of engines and methods). Raises UsageError."""
     loaded: dict[Engine, None] = {}
     wanted: list[str] = []
     by_method = {method_name(engine): engine for engine in registry.ENGINES}
@@ -201,7 +200,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) -> bool:
-    """Whether --scene and --engine select a test, or the test checks all verdicts."""
     case = case_of(item)
     if case is None:
         return "verdicts" in getattr(item, "fixturenames", ())
@@ -212,10 +210,8 @@ def _wanted(item: pytest.Item, scenes: Sequence[str], engines: Sequence[str]) ->
 
 @pytest.fixture(scope="session")
 def verdicts(request: pytest.FixtureRequest) -> dict[Case, CaseVerdict]:
-    """The verdicts on the selected cases. Only the cells of these cases are run.
-
-    The runs use all processors. With `pytest -n` every worker would run the grid, so the tests are skipped.
-    """
+    """The verdicts on the selected cases. Only the cells of these cases are run. The runs use all processors. With
+    `pytest -n` every worker would run the grid, so the tests are skipped."""
     if hasattr(request.config, "workerinput"):
         pytest.skip("the grid has workers of its own: pytest -m crosscheck, without -n")
     chosen = dict.fromkeys(case for case in map(case_of, request.session.items) if case is not None)

@@ -240,11 +240,8 @@ class Case:
         return self.promise.amplified if isinstance(self.promise, ConvergenceOrder) else 1.0
 
     def cells(self) -> tuple[Cell, ...]:
-        """The cells of the case, coarse steps first.
-
-        In a prescribed motion a wrong mass changes only the reactions. Reactions of first order need finer steps, since
-        their error is their change in a step.
-        """
+        """The cells of the case, coarse steps first. In a prescribed motion a wrong mass changes only the reactions.
+        Reactions of first order need finer steps, since their error is their change in a step."""
         mechanism = mechanism_of(self.scene)
         alone = (
             is_prescribed(mechanism) and isinstance(self.promise, ConvergenceOrder) and self.promise.of("reaction") == 1
@@ -277,10 +274,8 @@ def predictions(chosen: Iterable[Case]) -> dict[Scene, frozenset]:
 
 
 def own_softness(case: Case, rows: Sequence[Measurement], judge: Prediction) -> Regularisation | None:
-    """The regularisation of a case if the judge needs a run with exactly these values, else None.
-
-    In motions through singular positions errors are not proportional to the compliance.
-    """
+    """The regularisation of a case if the judge needs a run with exactly these values, else None. In motions through
+    singular positions errors are not proportional to the compliance."""
     softness = case.engine.regularisation(mechanism_of(case.scene), rows[-1].step)
     wanted = isinstance(case.promise, ConvergenceOrder) and Outcome(rows[-1].outcome).comparable
     return softness if wanted and not math.isfinite(judge.softness_error("angle", softness)) else None
@@ -292,11 +287,9 @@ def checks(
     judge: Prediction | None = None,
     as_soft: Mapping[str, float] | None = None,
 ) -> tuple[Check, ...]:
-    """The checks of theory at the finest step, and of the order over all rows. An unsupported case has no checks.
-
-    rows: from coarse to fine steps. judge: the prediction for the scene, computed here if None. as_soft: the judge's
-    errors with `own_softness`, computed here if None.
-    """
+    """The checks of theory at the finest step, and of the order over all rows. An unsupported case has no checks. rows:
+    from coarse to fine steps. judge: the prediction for the scene, computed here if None. as_soft: the judge's errors
+    with `own_softness`, computed here if None."""
     if judge is None:
         judge = prediction(case.scene, kinds(case.scene, [case.engine]))
     finest = rows[-1]

@@ -106,11 +106,9 @@ def run_judge(jobs: Iterable[JudgeRun], workers: int) -> dict[JudgeRun, Any]:
 def run_and_check(
     chosen: Iterable[Case], baseline: Baseline, workers: int | None = None, dearest: float | None = None
 ) -> dict[Case, CaseVerdict]:
-    """Run the judge and the cells of these cases in worker processes, and check the rows.
-
-    workers: number of processes, by default one per processor. dearest: limit of the CPU time divided by the
-    baseline's. With this limit runs are timed as in a report. Raises RuntimeError if the judge fails.
-    """
+    """Run the judge and the cells of these cases in worker processes, and check the rows. workers: number of processes,
+    by default one per processor. dearest: limit of the CPU time divided by the baseline's. With this limit runs are
+    timed as in a report. Raises RuntimeError if the judge fails."""
     chosen, workers = tuple(chosen), workers or worker_count()
     jobs = {scene: JudgeRun(scene, soft) for scene, soft in predictions(chosen).items()}
     results = run_judge(jobs.values(), workers)
@@ -150,11 +148,9 @@ def run_and_check(
 
 
 def vanished(case: Case, before: Sequence[Old | None]) -> tuple[Check, ...]:
-    """A check that fails if the baseline lacks rows of a case.
-
-    before: the case's rows in the baseline, from coarse to fine steps. The finest steps, and all rows of a third
-    party's scene or engine, may be missing in the baseline. Intermediate steps must not be missing.
-    """
+    """A check that fails if the baseline lacks rows of a case. before: the case's rows in the baseline, from coarse to
+    fine steps. The finest steps, and all rows of a third party's scene or engine, may be missing in the baseline.
+    Intermediate steps must not be missing."""
     finer = next((index for index, old in enumerate(reversed(before)) if old is not None), None)
     if finer is None:
         lacking = len(before) if case.ours else 0

@@ -25,7 +25,6 @@ NO_FILE_NAME = re.compile(r"[^A-Za-z0-9.+-]+")  # Characters that must not be in
 
 
 def _no_scene(value: Any) -> str:
-    """A clause with the reason why a value is not a valid scene, or an empty text."""
     if isinstance(value, type):
         return f"it is a class; give a scene made of it, {value.__name__}()"
     if not isinstance(value, Scene):
@@ -47,7 +46,6 @@ def _no_scene(value: Any) -> str:
 
 
 def _by_defaults(cls: type) -> Scene | None:
-    """A scene of this class with default parameters, or None if the class is no scene or a default is missing."""
     if not (issubclass(cls, Scene) and is_dataclass(cls)) or inspect.isabstract(cls):
         return None
     if not isinstance(getattr(cls, "name", None), str):

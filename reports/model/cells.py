@@ -52,10 +52,8 @@ OWN_VARIANTS = (
 
 @dataclass(frozen=True)
 class Cell(Valid):
-    """A scene in an engine at one step. Raises ValueError unless `every` and `samples` are positive integers.
-
-    Cells that differ only in `purpose` are equal. So an experiment at a step of the sweep uses the row of the sweep.
-    """
+    """A scene in an engine at one step. Raises ValueError unless `every` and `samples` are positive integers. Cells
+    that differ only in `purpose` are equal. So an experiment at a step of the sweep uses the row of the sweep."""
 
     scene: Scene
     engine: Engine
@@ -141,10 +139,8 @@ def sweep_cells(
     cost_limit: float = COST_LIMIT,
     divided: float = DIVIDED,
 ) -> tuple[Cell, ...]:
-    """The cells of all scenes in all engines at these numbers of steps per sample, coarse steps first.
-
-    The cells with the coarsest step are always included. `too_much` gives reasons why other cells are left out.
-    """
+    """The cells of all scenes in all engines at these numbers of steps per sample, coarse steps first. The cells with
+    the coarsest step are always included. `too_much` gives reasons why other cells are left out."""
     engines, scenes, steps = tuple(engines), tuple(scenes), sorted(steps)
     cells = [Cell(scene, engine, every) for every in steps for scene in scenes for engine in engines]
     return tuple(cell for cell in cells if cell.every == steps[0] or not too_much(cell, cost_limit, divided))
@@ -154,10 +150,8 @@ def beside_cells(
     scenes: Iterable[Scene], engines: Iterable[Engine], sweep: bool = False, named: bool = False
 ) -> tuple[Cell, ...]:
     """Cells of engines outside the grid at the steps in QUICK. Cells that take longer than BESIDE_LIMIT are left out.
-
     Without `sweep` only the finest step remains. Engines whose models take long to build are included if the user has
-    `named` them.
-    """
+    `named` them."""
     engines = tuple(engine for engine in engines if named or engine.build_time < SLOW_TO_BUILD)
     out: list[Cell] = []
     for scene in scenes:

@@ -76,10 +76,8 @@ def nearest(checks: Iterable[Check]) -> Check:
 
 
 def complaints(checks: Iterable[Check], known: Mapping[str, Deviation], outcome: str = "") -> tuple[str, ...]:
-    """Sentences about unexpected failures, and about known deviations that have grown or no longer occur.
-
-    outcome: outcome of the checked run, which must be the known outcome of a deviation.
-    """
+    """Sentences about unexpected failures, and about known deviations that have grown or no longer occur. outcome:
+    outcome of the checked run, which must be the known outcome of a deviation."""
     out: list[str] = []
     checks = tuple(checks)
     for check in checks:

@@ -76,10 +76,8 @@ def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
 
 
 def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit:
-    """Determine how errors depend on the step [s]. Errors that are not finite are left out.
-
-    An error of at most `rounding` counts as rounding.
-    """
+    """Determine how errors depend on the step [s]. Errors that are not finite are left out. An error of at most
+    `rounding` counts as rounding."""
     return _fit(
         tuple(sorted(((h, e) for h, e in zip(steps, errors, strict=True) if math.isfinite(e)), reverse=True)), rounding
     )
@@ -126,10 +124,8 @@ def _longest_run(mask: np.ndarray) -> tuple[int, int]:
 
 
 def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
-    """(limit, uncertainty) if the last two intervals are flat, or NaN.
-
-    One flat interval suffices if the errors rise to a limit after two errors have cancelled at a coarser step.
-    """
+    """(limit, uncertainty) if the last two intervals are flat, or NaN. One flat interval suffices if the errors rise to
+    a limit after two errors have cancelled at a coarser step."""
     if len(errors) < 3 or abs(slopes[-1]) > FLAT:
         return NAN, NAN
     limit, uncertainty, settles = _limit(steps[-3:], errors[-3:])
@@ -138,11 +134,9 @@ def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple
 
 
 def _limit(steps: np.ndarray, errors: np.ndarray) -> tuple[float, float, bool]:
-    """(limit, uncertainty, whether the errors converge) of a fit limit + factor * step ** power to three points.
-
-    If no power within POWERS fits, the limit is the error at the finest step. The uncertainty is then the largest
-    difference between this error and the other two errors.
-    """
+    """(limit, uncertainty, whether the errors converge) of a fit limit + factor * step ** power to three points. If no
+    power within POWERS fits, the limit is the error at the finest step. The uncertainty is then the largest difference
+    between this error and the other two errors."""
     before, last = errors[0] - errors[1], errors[1] - errors[2]
     if last and before / last > 0:
         wanted = before / last

@@ -49,10 +49,8 @@ NONE_ABSENT: Mapping[str, str] = MappingProxyType({})
 
 
 def nearest(kind: str, word: str, known: Iterable[str], absent: Mapping[str, str] = NONE_ABSENT) -> BadInput:
-    """The error about an unknown word, with the most similar known word, regardless of case.
-
-    absent: name of an item that is not installed -> a sentence on how to install it.
-    """
+    """The error about an unknown word, with the most similar known word, regardless of case. absent: name of an item
+    that is not installed -> a sentence on how to install it."""
     names = {name.lower(): name for name in (*known, *absent)}
     low = word.lower()
     near = difflib.get_close_matches(low, names, 1, 0.4)

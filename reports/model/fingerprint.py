@@ -103,7 +103,6 @@ def _files(module: str) -> tuple[Path, ...]:
 
 @cache
 def _our_files(folders: tuple[str, ...]) -> str:
-    """A digest of this suite's sources, which is independent of the folder of the checkout."""
     paths = (sorted((ROOT / folder).rglob(pattern)) for folder in folders for pattern in ("*.py", "*.mjs"))
     return _content(path for group in paths for path in group)
 
@@ -118,10 +117,8 @@ def _distributions() -> Mapping[str, list[str]]:
 
 
 def with_required(distributions: Iterable[str]) -> set[str]:
-    """Normalised names of the distributions and of all installed distributions that they require.
-
-    Packages that only an extra requires are left out, since they may be installed without being used.
-    """
+    """Normalised names of the distributions and of all installed distributions that they require. Packages that only an
+    extra requires are left out, since they may be installed without being used."""
     names: set[str] = set()
     waiting = list(distributions)
     while waiting:
@@ -134,7 +131,6 @@ def with_required(distributions: Iterable[str]) -> set[str]:
 
 @cache
 def _required(name: str) -> tuple[str, ...] | None:
-    """The requirements of a distribution, or None if it is not installed."""
     try:
         requirements = metadata.requires(name) or []
     except metadata.PackageNotFoundError:

@@ -104,7 +104,6 @@ class Measurement:
         return asdict(self)
 
     def _repr_html_(self) -> str:
-        """A table for notebooks. Fields without a value are left out."""
         known = ((name, value) for name, value in self.as_dict().items() if value not in ("", 0) and value == value)
         rows = (f"<tr><th>{name}</th><td>{escape(str(value))}</td></tr>" for name, value in known)
         return f"<table>{''.join(rows)}</table>"
@@ -131,10 +130,8 @@ def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> 
 
 
 def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
-    """The scene's motion at the instants t (times,) [s]. If the folder exists, motions are stored there.
-
-    Instants that differ only by rounding share a motion. Raises ValueError if the scene has no such motion.
-    """
+    """The scene's motion at the instants t (times,) [s]. If the folder exists, motions are stored there. Instants that
+    differ only by rounding share a motion. Raises ValueError if the scene has no such motion."""
     usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)
     shared = np.allclose(t, usual, rtol=SAME_INSTANT, atol=0.0)
     instants = np.ascontiguousarray(usual if shared else t, dtype=float)
@@ -157,7 +154,6 @@ def _motion(scene: Scene, instants: bytes, name: str, folder: Path | None) -> Tr
 
 
 def _store_motion(motion: Trajectory, file: Path) -> None:
-    """Write the complete file or no file. Errors are ignored, since the motion can be computed again."""
     half = file.with_name(f"{file.stem}.{os.getpid()}.half")
     with suppress(OSError):
         try:
@@ -174,10 +170,8 @@ def _own_freedoms(scene: Scene) -> int:
 
 
 def measure(cell: Cell, repeat: bool = True, truths: Path | None = None) -> Measurement:
-    """Build, run, compare and time one cell in this process. truths: folder of exact motions.
-
-    Refusals and warnings of the engine become outcomes. Other exceptions are raised.
-    """
+    """Build, run, compare and time one cell in this process. truths: folder of exact motions. Refusals and warnings of
+    the engine become outcomes. Other exceptions are raised."""
     row = blank(cell)
     with np.errstate(all="ignore"):
         try:

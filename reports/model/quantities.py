@@ -13,12 +13,9 @@ DIGITS = 4  # Number of significant digits in a report's CSV files.
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of error.
-
-    The rounding error of positions and angles is 1e-11. A step has a rounding error of about 1e-16, there are up to 1e5
-    steps, and the problem may be ill-conditioned. Velocities and reactions have larger rounding errors, since they are
-    differences of positions and of velocities.
-    """
+    """A kind of error. The rounding error of positions and angles is 1e-11. A step has a rounding error of about 1e-16,
+    there are up to 1e5 steps, and the problem may be ill-conditioned. Velocities and reactions have larger rounding
+    errors, since they are differences of positions and of velocities."""
 
     name: str  # A field of Measurement.
     unit: str
@@ -88,11 +85,9 @@ def rounding_tolerance(name: str, before: float, amplified: float = 1.0) -> tupl
 
 
 def agrees(name: str, now: float, before: float, amplified: float = 1.0) -> bool:
-    """Whether two values of a quantity differ by at most `rounding_tolerance`. NaN agrees with NaN.
-
-    `before` may be rounded to DIGITS. In 4,280 rows of two processors only eight numbers differ by more. These are
-    errors of pivots at the contact of two curves, which amplify rounding.
-    """
+    """Whether two values of a quantity differ by at most `rounding_tolerance`. NaN agrees with NaN. `before` may be
+    rounded to DIGITS. In 4,280 rows of two processors only eight numbers differ by more. These are errors of pivots at
+    the contact of two curves, which amplify rounding."""
     allowed = sum(rounding_tolerance(name, before, amplified))
     if not (math.isfinite(now) and math.isfinite(before)):
         return now == before or (math.isnan(now) and math.isnan(before))

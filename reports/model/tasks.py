@@ -53,10 +53,8 @@ class Answer:
 
 
 class Task(ABC):
-    """The base of tasks, which are frozen dataclasses. A task can be pickled for a worker.
-
-    The fields of a task identify its answer. An answer is stale when a source file of this suite changes.
-    """
+    """The base of tasks, which are frozen dataclasses. A task can be pickled for a worker. The fields of a task
+    identify its answer. An answer is stale when a source file of this suite changes."""
 
     seconds: ClassVar[float] = 1.0  # Estimated CPU time if it does not depend on the fields.
     words: ClassVar[str] = "{0!r}"  # Format string of the label, in which {0} is the task.

@@ -146,10 +146,8 @@ def _supervise(
     watch: Watch | None = None,
     wall: float | None = None,
 ) -> Iterator[Answer]:
-    """Yield (item, result or Loss, note) like `supervise`. The number of workers is ignored.
-
-    Raises BadInput if a worker has other versions. Raises WorkersLost if no worker connects for WORKERS_WITHIN seconds.
-    """
+    """Yield (item, result or Loss, note) like `supervise`. The number of workers is ignored. Raises BadInput if a
+    worker has other versions. Raises WorkersLost if no worker connects for WORKERS_WITHIN seconds."""
     parts = chunks(items)
     job = partial(run_item, function, tuple(filter(None, sys.path)))
     packed = [(job, [pickle.dumps((i, getattr(i, "key", None))) for i in part], limit, wall) for part in parts]

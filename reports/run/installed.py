@@ -46,9 +46,7 @@ def environment(folder: Path, further: Sequence[Path] = ()) -> dict[str, str]:
 
 def installed(names: Sequence[str], version: str) -> Path:
     """Return the folder of a version, which is installed if necessary. The first distribution with this version counts.
-
-    Raises BadInput if the version does not exist or has no wheel for this Python, or if there is no network.
-    """
+    Raises BadInput if the version does not exist or has no wheel for this Python, or if there is no network."""
     if not VERSION.fullmatch(version):
         raise BadInput(f"{version!r} is no version; give one like 3.6.0")
     places = {name: _place(f"{name}-{version}") for name in names}
@@ -64,11 +62,9 @@ def installed(names: Sequence[str], version: str) -> Path:
 
 
 def built(path: Path) -> Path:
-    """Install a wheel or a folder of sources and return the folder of the installation. pip builds the sources.
-
-    A folder without pyproject.toml and setup.py contains installed packages and is returned unchanged. A wheel is
-    installed again if its content has changed. A folder of sources is installed every time. Raises BadInput.
-    """
+    """Install a wheel or a folder of sources and return the folder of the installation. pip builds the sources. A
+    folder without pyproject.toml and setup.py contains installed packages and is returned unchanged. A wheel is
+    installed again if its content has changed. A folder of sources is installed every time. Raises BadInput."""
     path = path.absolute()
     if path.is_dir():
         if not any((path / name).is_file() for name in ("pyproject.toml", "setup.py")):
@@ -115,7 +111,6 @@ def _used(folder: Path) -> Path:
 
 
 def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
-    """Install into a temporary folder and rename it to `folder`. Return pip's errors, which are empty after success."""
     remedy = f"set {CACHE} to a folder that can be written"
     folder_for(folder.parent, remedy)
     try:
@@ -144,7 +139,6 @@ def _install(what: str, folder: Path, wheels_only: bool = True) -> str:
 
 
 def _reason(text: str) -> str:
-    """The last error or the last line that pip printed, or OFFLINE without a connection."""
     if any(mark in text for mark in UNCONNECTED):
         return OFFLINE
     lines = [line.strip() for line in text.splitlines() if line.strip()]
@@ -153,7 +147,6 @@ def _reason(text: str) -> str:
 
 
 def _refusal(version: str, texts: Mapping[str, str]) -> BadInput:
-    """The error that no distribution has the version, with the nearest versions. texts: name -> pip's output."""
     names, reasons = " or ".join(texts), {name: _reason(text) for name, text in texts.items()}
     if set(reasons.values()) == {OFFLINE}:
         return BadInput(f"{names} {version} can't be fetched: {OFFLINE}")
@@ -179,9 +172,7 @@ def numbers(version: str) -> tuple[int, ...]:
 
 
 def distributions_in(folder: Path) -> Mapping[str, str]:
-    """Name -> version of a distribution in a folder, from the metadata.
-
-    Versions in modules are not reliable. For example, the module of pymunk 7.0.0 reports 2.0.0.
-    """
+    """Name -> version of a distribution in a folder, from the metadata. Versions in modules are not reliable. For
+    example, the module of pymunk 7.0.0 reports 2.0.0."""
     found = metadata.distributions(path=[str(folder)])
     return {name: distribution.version for distribution in found if (name := distribution.metadata["Name"])}

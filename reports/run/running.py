@@ -38,11 +38,9 @@ def expected_seconds(item: Any) -> float:
 
 
 def longest_first(items: Iterable[Item]) -> list[Item]:
-    """Sort the scenes, and the items of each scene, by their expected time in descending order.
-
-    The items of a scene stay together, since a worker caches exact motions. The last items are short, so all workers
-    end at about the same time.
-    """
+    """Sort the scenes, and the items of each scene, by their expected time in descending order. The items of a scene
+    stay together, since a worker caches exact motions. The last items are short, so all workers end at about the same
+    time."""
     groups: dict[Any, list[Item]] = {}
     for item in items:
         groups.setdefault(getattr(item, "scene", item), []).append(item)
@@ -116,10 +114,8 @@ def run_into(
     supervised: Supervise = supervise,
 ) -> int:
     """Run the missing items, or all items if `fresh` is true. Store the results and return the number of items run.
-
     Results are stored as they arrive, also before an interruption. If another program kills the process of an item, the
-    item is not stored, and WorkersLost is raised after all other items.
-    """
+    item is not stored, and WorkersLost is raised after all other items."""
     waiting = tuple(items) if fresh else missing(items, store, limit)  # Old rows stay until new rows arrive.
     lost: list[str] = []
     # The path is absolute, since workers run in other folders.

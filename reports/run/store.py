@@ -51,11 +51,9 @@ class Damaged(Exception):
 
 
 class Store:
-    """A context manager that stores measurements by the key of the cell, and answers by the key of the task.
-
-    A row survives the end of the program once `put` has returned. A damaged file is renamed and replaced by a new file,
-    and `notice` has a sentence about this. The constructor and all methods raise FileTrouble if the file can't be used.
-    """
+    """A context manager that stores measurements by the key of the cell, and answers by the key of the task. A row
+    survives the end of the program once `put` has returned. A damaged file is renamed and replaced by a new file, and
+    `notice` has a sentence about this. The constructor and all methods raise FileTrouble if the file can't be used."""
 
     def __init__(self, path: Path) -> None:
         self.path, self.notice = path, ""
@@ -152,7 +150,6 @@ def _file_trouble(path: Path) -> Iterator[None]:
 
 
 def _connected(path: Path) -> sqlite3.Connection:
-    """A connection to a store. A missing store is created. Raises Damaged, FileTrouble and errors of SQLite."""
     beside = path.with_name(path.name + "-wal")
     if path.is_file() and not path.stat().st_size and beside.is_file() and beside.stat().st_size:
         raise Damaged("it is empty, while rows lie beside it")  # SQLite would delete these rows.
@@ -203,7 +200,6 @@ def _copy(path: Path, copy: Path) -> None:
 
 
 def _put_aside(path: Path) -> Path:
-    """Rename a damaged store and SQLite's files beside it. Return the new path of the store."""
     number = 1
     while any(path.with_name(f"{path.name}.damaged-{number}{end}").exists() for end in ("", *SQLITE_SUFFIXES)):
         number += 1

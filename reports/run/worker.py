@@ -47,11 +47,9 @@ _reading = threading.Lock()
 
 
 def cpu_time(process: int) -> float | None:
-    """CPU seconds of all threads of a process, or None if the system does not report them for another process.
-
-    The number of the clock on Linux follows clock_getcpuclockid(3). No CPU timer (ITIMER_PROF, RLIMIT_CPU) is set,
-    since it would reduce the resolution of this clock to 4 ms. The same clock also times the stepping.
-    """
+    """CPU seconds of all threads of a process, or None if the system does not report them for another process. The
+    number of the clock on Linux follows clock_getcpuclockid(3). No CPU timer (ITIMER_PROF, RLIMIT_CPU) is set, since it
+    would reduce the resolution of this clock to 4 ms. The same clock also times the stepping."""
     try:
         return time.clock_gettime((~process << 3) | 2)
     except (AttributeError, OSError, OverflowError):
@@ -112,10 +110,8 @@ def start_method(*modules: str) -> Any:
 
 
 def start_early(*modules: str) -> None:
-    """Start the fork server, which also imports these modules, without waiting for it.
-
-    Without a fork server each worker imports the modules, which is only slower.
-    """
+    """Start the fork server, which also imports these modules, without waiting for it. Without a fork server each
+    worker imports the modules, which is only slower."""
     if start_method(*modules).get_start_method() == "forkserver":
         from multiprocessing import forkserver
 
@@ -147,11 +143,9 @@ def start_worker(context: Any, folder: str, limit: float, wall: float) -> Worker
 
 @contextmanager
 def process_start() -> Iterator[None]:
-    """Block Ctrl-C while a process starts. Otherwise Ctrl-C could print a traceback and prevent the supervision.
-
-    The started processes inherit the blocked signal. `python -c` starts them and would import modules from the current
-    folder first, so PYTHONSAFEPATH is set.
-    """
+    """Block Ctrl-C while a process starts. Otherwise Ctrl-C could print a traceback and prevent the supervision. The
+    started processes inherit the blocked signal. `python -c` starts them and would import modules from the current
+    folder first, so PYTHONSAFEPATH is set."""
     is_set = SAFE_PATH in os.environ
     os.environ.setdefault(SAFE_PATH, OURS)
     before = None
@@ -234,11 +228,9 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
 
 
 def _end_with_the_parent() -> None:
-    """Request that Linux kills this process when its parent, the fork server, ends.
-
-    The thread `_watch` is not enough, since native code may hold the interpreter lock. The fork server ends with the
-    command after all workers have closed a pipe.
-    """
+    """Request that Linux kills this process when its parent, the fork server, ends. The thread `_watch` is not enough,
+    since native code may hold the interpreter lock. The fork server ends with the command after all workers have closed
+    a pipe."""
     with suppress(ImportError, AttributeError, KeyError, OSError, TypeError):
         ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)
         from multiprocessing import forkserver
@@ -249,7 +241,6 @@ def _end_with_the_parent() -> None:
 
 
 def _redirect(folder: Path) -> None:
-    """Change the working folder and redirect the output of engines to a log."""
     os.chdir(folder)
     log = os.open(f"{os.getpid()}.log", os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
     tempfile.tempdir = os.environ["TMPDIR"] = str(folder)  # Files of engines are deleted with this folder.
@@ -259,10 +250,8 @@ def _redirect(folder: Path) -> None:
 
 
 def _watch(clock: CpuDeadline) -> None:
-    """End the process when the parent has ended, or at the CPU deadline if the parent can't read the CPU time.
-
-    It runs in a thread.
-    """
+    """End the process when the parent has ended, or at the CPU deadline if the parent can't read the CPU time. It runs
+    in a thread."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     while parent.is_alive():

@@ -74,11 +74,8 @@ class CaseResult:
 
 
 def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
-    """Yield the results of all cases in these chunks.
-
-    A chunk of one case that crashed or timed out is a fault with an infinite error. An unfinished chunk of several
-    cases yields nothing, since its cases are run again one by one.
-    """
+    """Yield the results of all cases in these chunks. A chunk of one case that crashed or timed out is a fault with an
+    infinite error. An unfinished chunk of several cases yields nothing, since its cases are run again one by one."""
     for chunk, answer in answers.items():
         if answer.finished:
             rows = json.loads(str(answer.values["results"]))
@@ -94,10 +91,8 @@ def iter_case_results(answers: Mapping[Chunk, Answer]) -> Iterator[CaseResult]:
 def make_chunks(
     subjects: Sequence[Subject], seed: int, cases: int, kinds: Sequence[str], decades: int, oracles: tuple[str, ...]
 ) -> list[Chunk]:
-    """Chunks of the first cases of a seed; the subjects alternate.
-
-    If a subject supports no kind in `kinds`, its cases have all kinds that it supports.
-    """
+    """Chunks of the first cases of a seed; the subjects alternate. If a subject supports no kind in `kinds`, its cases
+    have all kinds that it supports."""
     out = []
     for first in range(0, cases, CHUNK_SIZE):
         count = min(CHUNK_SIZE, cases - first)

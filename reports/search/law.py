@@ -43,11 +43,9 @@ class Fault(Exception):
 
 
 def iter_nudged(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
-    """Yield copies that are slightly shifted, rotated and rounded, each with a function that transforms a run back.
-
-    The shift is at most NUDGE_SHARE times the maximum of `away` [m], the length scale and the coordinates of bodies.
-    The rotation is at most NUDGE_SHARE radians.
-    """
+    """Yield copies that are slightly shifted, rotated and rounded, each with a function that transforms a run back. The
+    shift is at most NUDGE_SHARE times the maximum of `away` [m], the length scale and the coordinates of bodies. The
+    rotation is at most NUDGE_SHARE radians."""
     random = np.random.default_rng(NUDGE_COUNT)
     far = NUDGE_SHARE * max(away, mechanism.length_scale, float(np.abs(mechanism.pose[:, :2]).max()))
     for seed, (x, y, turn) in enumerate(random.uniform(-1.0, 1.0, (NUDGE_COUNT, 3)).tolist()):
@@ -59,17 +57,13 @@ def iter_nudged(mechanism: Mechanism, away: float = 0.0) -> Iterator[Described]:
 
 def difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
     """The largest difference of two motions (..., bodies, 3), relative to the maximum of `expected` and `scales`.
-
-    Angles are multiplied by the mechanism's length scale. The difference is infinite if a number is not finite.
-    """
+    Angles are multiplied by the mechanism's length scale. The difference is infinite if a number is not finite."""
     return _relative(found, expected, np.array([1.0, 1.0, mechanism.length_scale]), scales)
 
 
 def force_difference(mechanism: Mechanism, found: Array, expected: Array, scales: tuple[Array, ...] = ()) -> float:
-    """The largest relative difference of forces (..., rows). Torques are divided by the mechanism's length scale.
-
-    A force of NaN is not reported by the engine, and is ignored.
-    """
+    """The largest relative difference of forces (..., rows). Torques are divided by the mechanism's length scale. A
+    force of NaN is not reported by the engine, and is ignored."""
     reported = ~np.isnan(found)
     size = np.where(mechanism.is_angular, 1 / mechanism.length_scale, 1.0)
     return _relative(np.where(reported, found, 0.0), np.where(reported, expected, 0.0), size, (expected, *scales))
@@ -84,11 +78,9 @@ def _relative(found: Array, expected: Array, size: Array, scales: tuple[Array, .
 
 
 def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array) -> float:
-    """The largest rotation [rad] in a step dt [s] from a state. Bodies and directions of constraints are compared.
-
-    A constraint direction turns at about the rate |J' v| / (|J| |v|). Above one radian, the result of every integrator
-    is dominated by rounding.
-    """
+    """The largest rotation [rad] in a step dt [s] from a state. Bodies and directions of constraints are compared. A
+    constraint direction turns at about the rate |J' v| / (|J| |v|). Above one radian, the result of every integrator is
+    dominated by rounding."""
     rows, bias = mechanism.rows(pose), mechanism.bias(pose, twist)
     size = np.array([1.0, 1.0, mechanism.length_scale])
     parts = np.abs(rows.reshape(len(rows), *twist.shape) / size).max(axis=-1, initial=0.0)  # (rows, bodies)

@@ -81,8 +81,6 @@ def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decad
 
 
 class _Draw(Integers):
-    """The random integers of one case and the recipe that is drawn from them."""
-
     def __init__(self, seed: Sequence[int], kinds: Kinds, decades: int) -> None:
         super().__init__(seed)
         self._decades = decades
@@ -228,11 +226,9 @@ def _shapes(engine: Engine, seed: int, kinds: tuple[str, ...], decades: int) -> 
 
 
 def renumber(shape: Recipe, whole: Whole) -> Recipe:
-    """A recipe of the same shape with new numbers. `whole(low, high)` draws an integer from `low` to `high`.
-
-    Zero stays zero, since engines build a drive at rest differently from a turning drive. The ratio of a gear does not
-    change, since it is a constant of the compiled model.
-    """
+    """A recipe of the same shape with new numbers. `whole(low, high)` draws an integer from `low` to `high`. Zero stays
+    zero, since engines build a drive at rest differently from a turning drive. The ratio of a gear does not change,
+    since it is a constant of the compiled model."""
 
     def part(old: RecipeBody) -> RecipeBody:
         velocity = (whole(-4, 4), whole(-4, 4), whole(-6, 6)) if moving else (0, 0, 0)

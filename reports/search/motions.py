@@ -64,10 +64,8 @@ def judge_motion(mechanism: Mechanism) -> Trajectory:
 
 
 def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
-    """Check -> (error at the finest step, tolerance). The check "estimate" needs a run with an error estimate.
-
-    Raises Fault if a run diverges without a warning.
-    """
+    """Check -> (error at the finest step, tolerance). The check "estimate" needs a run with an error estimate. Raises
+    Fault if a run diverges without a warning."""
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return CheckSkipped("shapes in contact may separate, and a polygon does not roll like its curve")
     dt = MOTION_SPAN * mechanism.time_scale / MOTION_SAMPLES / COARSE_STEPS
@@ -219,10 +217,8 @@ class _Case:
         return {name: max(pair_difference[name] for pair_difference in differences) for name in ERROR_FLOORS}
 
     def resolved(self, parts: int) -> bool:
-        """Whether a textbook method of the declared order (at most 4) has this order while the step is halved twice.
-
-        No method converges, for example, if the length of a spring passes zero within a step and reverses its force.
-        """
+        """Whether a textbook method of the declared order (at most 4) has this order while the step is halved twice. No
+        method converges, for example, if the length of a spring passes zero within a step and reverses its force."""
         usual = ConvergenceOrder(max((order for order in TABLEAUS if order <= self.promise.order), default=1))
         spacing, parts = MOTION_SPAN * self.mechanism.time_scale / MOTION_SAMPLES, max(4, parts)
         textbook = in_numpy if usual.order == 1 else stepped  # compiled code has no method of order 1

@@ -187,7 +187,6 @@ def _frames(model: RawModel, q: Numbers, v: Numbers) -> list[Frame]:
 
 
 def _velocities(model: RawModel, q: Numbers, v: Numbers) -> Numbers:
-    """Velocities of the centres of mass and rates of the angles (3 bodies,)."""
     out = []
     for part, (_, angle, speed, rate) in zip(model.parts, _frames(model, q, v)[1:], strict=True):
         out += [*(speed + rate * _across(_turned(angle, np.divide(part.centre, 10)))), rate]
@@ -235,10 +234,8 @@ class StartEquations:
     rates: Array
 
     def expected(self, give: Array, bent: bool = True) -> Array:
-        """Accelerations of the coordinates. `give` (rows, any): compliance of the equalities' rows.
-
-        bent: whether to include the velocity term of curved equalities, which MuJoCo up to 4.0.1 omits.
-        """
+        """Accelerations of the coordinates. `give` (rows, any): compliance of the equalities' rows. bent: whether to
+        include the velocity term of curved equalities, which MuJoCo up to 4.0.1 omits."""
         rows: Any = np.linalg.solve(self.root.T, np.vstack([np.zeros((0, len(self.free))), *self.rows]).T).T
         right = [item if bent else item - curve for item, curve in zip(self.right, self.bent, strict=True)]
         law = constrained(rows, np.concatenate([[], *right]), np.ones(len(self.free)), self.free, give)
@@ -278,10 +275,8 @@ def start_equations(model: RawModel) -> StartEquations:
 
 
 def draw_model(seed: int, number: int, kinds: tuple[str, ...]) -> RawModel:
-    """Case `number` of a seed with equalities of these kinds. The case is the same on every machine.
-
-    No body has slides if all kinds are among HINGED_KINDS.
-    """
+    """Case `number` of a seed with equalities of these kinds. The case is the same on every machine. No body has slides
+    if all kinds are among HINGED_KINDS."""
     random = Integers([seed, number, len(kinds)])
     while True:
         candidate = _draw_once(random, kinds)

@@ -84,10 +84,8 @@ Stored = tuple[list[CaseResult], list[tuple[Shrink, Answer]], Mapping[PlantedCon
 
 
 def read_stored(store: Store, published: bool = False) -> Stored:
-    """The stored cases, reduced findings, and controls with planted faults.
-
-    `published`: only cases of `plan.published_chunks`.
-    """
+    """The stored cases, reduced findings, and controls with planted faults. `published`: only cases of
+    `plan.published_chunks`."""
     texts = store.load_references()
     subjects = known_subjects(texts)
     chunks = [chunk for chunk in (chunk_from_json(text, subjects) for text in texts) if chunk is not None]

@@ -59,10 +59,8 @@ CLOSING_STEPS = 6  # number of Newton steps that close the joints of a wrong mec
 
 @dataclass(frozen=True)
 class Misbuilt(Mechanism):
-    """A mechanism with a fault; reactions are computed for the mechanism `right`.
-
-    If not all joints can be closed with the fault, the gaps are minimal.
-    """
+    """A mechanism with a fault; reactions are computed for the mechanism `right`. If not all joints can be closed with
+    the fault, the gaps are minimal."""
 
     right: Mechanism = field(kw_only=True)
 
@@ -73,11 +71,8 @@ class Misbuilt(Mechanism):
         return self.right.reaction(*arguments, **options)
 
     def closed(self, twist: Array) -> Misbuilt:
-        """A copy with closed joints. Poses and velocities are projected in the metric of the masses.
-
-        twist: velocities (bodies, 3) before the projection. The poses before the projection are those of the right
-        mechanism.
-        """
+        """A copy with closed joints. Poses and velocities are projected in the metric of the masses. twist: velocities
+        (bodies, 3) before the projection. The poses before the projection are those of the right mechanism."""
         pose = allowed = self.right.pose
         for _ in range(CLOSING_STEPS):
             pose, allowed = dynamics_of(self).project(pose, twist, 0.0)
@@ -135,7 +130,6 @@ class PlantedFault:
         return replace(part, **{name: off})
 
     def _heavier(self, mechanism: Mechanism, body: Body) -> Body:
-        """The body, with a larger inertia if it satisfies the condition of the fault."""
         off = {
             "inertia": True,
             "shifted": body.pose[0] > 0,

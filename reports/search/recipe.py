@@ -49,10 +49,8 @@ MOTION_ROUNDING = 1e-12
 
 
 def build(recipe: Recipe) -> Mechanism:
-    """The mechanism of a recipe.
-
-    Raises InvalidMechanism for an invalid recipe, for example with nearly dependent rows or with curves that don't fit.
-    """
+    """The mechanism of a recipe. Raises InvalidMechanism for an invalid recipe, for example with nearly dependent rows
+    or with curves that don't fit."""
     standing = Standing(recipe)
     links = list(enumerate(recipe.links, start=1))
     held_joints = [standing.held(link, number) for number, link in links if link.kind not in FORCE_KINDS]
@@ -89,7 +87,6 @@ class Standing:
             self._sizes.append(size)
 
     def _check(self, link: RecipeLink, number: int) -> None:
-        """Raise InvalidMechanism for a link with unknown bodies or of an unknown kind."""
         count = len(self.bodies)
         if not (0 <= link.first <= count and 0 < link.second <= count and link.first != link.second):
             raise InvalidMechanism(
@@ -211,7 +208,6 @@ class Standing:
         return self.bodies[body - 1].pose[2] if body else 0.0
 
     def _local(self, body: int, point: Point) -> Vector:
-        """Coordinates [m] of a point of the world in a body's frame."""
         x, y = (float(point[axis] - self._places[body][axis]) for axis in (0, 1))
         return tuple(components(-self._angle(body), x, y))
 

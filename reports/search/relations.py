@@ -108,7 +108,6 @@ def _compare_runs(
     back: Callable[[Trajectory], State],
     stricter: Engine | None = None,
 ) -> tuple[float, float] | CheckSkipped:
-    """The error of the last states, and its tolerance. `reports.search.law` defines the noise in the tolerance."""
 
     def run(described: Mechanism) -> Trajectory:
         return engine.build(described, INSTANT_STEP * described.time_scale)(1, INSTANT_STEPS)

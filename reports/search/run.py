@@ -106,10 +106,8 @@ class Search:
         return list(iter_case_results(stored_answers(self.store, chunks)))
 
     def _run_batch(self, batch: Sequence[Chunk]) -> None:
-        """Run the chunks of a batch, and the cases of crashed chunks one by one.
-
-        Without a time limit there is one wave, since workers are idle between two waves.
-        """
+        """Run the chunks of a batch, and the cases of crashed chunks one by one. Without a time limit there is one
+        wave, since workers are idle between two waves."""
         progress = self.progress(self.store, batch, CHUNK_LIMIT, "chunks", size=lambda chunk: chunk.count)
         with progress as (waiting, done, watch):
             size = len(waiting) if self.seconds is None else WAVE_CHUNKS * self.crew.threads
@@ -127,7 +125,6 @@ class Search:
         run_into(self.store, tasks, False, limit, self.crew.threads, done, watch, supervised=self.crew.supervise)
 
     def _count(self, answer: Answer, single: int) -> int:
-        """The number of cases in an answer. `single`: the number if a single case did not finish."""
         results = json.loads(str(answer.values["results"])) if answer.finished else []
         count = len(results) or single
         self.cases += count

@@ -66,10 +66,8 @@ class Block:
 
 
 def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
-    """The script of a case; empty for other engines, or if our code runs between the steps.
-
-    `number`: number of the case, which selects the relation.
-    """
+    """The script of a case; empty for other engines, or if our code runs between the steps. `number`: number of the
+    case, which selects the relation."""
     if isinstance(subject, Alone):
         return _of_mujoco_alone(case, subject.release)
     mechanism = build(case)
@@ -101,7 +99,6 @@ def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list
 
 
 def _motion(engine: Any, title: str, mechanism: Mechanism, dt: float, steps: int) -> Block:
-    """A block with poses after a short motion. Raises Unsupported if our code runs between the steps."""
     title = f"{title}: {steps} steps of {dt:.6g} s"
     expected = TRUTH.build(mechanism, steps * dt)(1, 1).pose[-1]
     if engine.name != "pymunk":
@@ -164,8 +161,6 @@ def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
 
 
 def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
-    """The script with these blocks. `engine`: the engine, or None for MuJoCo alone. `turning`: lines that remove whole
-    turns."""
     runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
     rows = "\n".join(
         f"    ({block.title!r}, run_{number}, {np.asarray(block.expected).tolist()!r}),"

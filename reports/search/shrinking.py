@@ -40,7 +40,6 @@ def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Ca
 
 
 def _with_less(case: Any) -> Iterator[Any]:
-    """Yield copies without one body, then copies without one joint."""
     for removed in range(len(case.parts), 0, -1):
         if len(case.parts) > 1:
             yield _without_part(case, removed)
@@ -160,7 +159,6 @@ class Shrink(Task):
         }
 
     def _oracle(self, case: Any) -> tuple[str, ...]:
-        """The oracle that detects the fault; the reduction runs no other oracle."""
         for oracle in (name for name in ORACLES if name in self.chunk.oracles):
             if self.check in self.subject.ask(case, self.chunk.first, (oracle,)).faults:
                 return (oracle,)

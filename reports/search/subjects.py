@@ -65,10 +65,8 @@ class Adapted:
 
 @dataclass(frozen=True)
 class Alone:
-    """MuJoCo without an adapter, with models in MuJoCo's format (`mujoco_alone`).
-
-    `release`: a version such as "3.6.0", or "" for the installed release.
-    """
+    """MuJoCo without an adapter, with models in MuJoCo's format (`mujoco_alone`). `release`: a version such as "3.6.0",
+    or "" for the installed release."""
 
     release: str = ""
     case: ClassVar[type] = mujoco_alone.RawModel

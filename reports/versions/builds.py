@@ -117,10 +117,8 @@ def run_release(
     announce: Callable[[str], None] = lambda word: None,
     **terms: Any,
 ) -> VersionColumn:
-    """Run scenes in a release of an engine, which is installed if necessary. terms: fields of VersionRequest.
-
-    Raises BadInput if the release does not exist.
-    """
+    """Run scenes in a release of an engine, which is installed if necessary. terms: fields of VersionRequest. Raises
+    BadInput if the release does not exist."""
     engines = engines_named(name)
     announce(f"{name} {version}")
     location = installed(distributions(engines[0]), version)

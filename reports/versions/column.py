@@ -158,11 +158,8 @@ def _messages(request: VersionRequest) -> Iterator[Any]:
 
 
 def answer(request: VersionRequest, send: Callable[[Any], None]) -> Loss | None:
-    """Run the request in the process of the version. Return the reason if the version can't be used, else None.
-
-    `send` is called with each row, with each (Trees, Answer), and a few times a second with the labels of running
-    cells.
-    """
+    """Run the request in the process of the version. Return the reason if the version can't be used, else None. `send`
+    is called with each row, with each (Trees, Answer), and a few times a second with the labels of running cells."""
     try:
         engines = _usable_engines(request)
     except ValueError as error:
@@ -202,7 +199,6 @@ def _usable_engines(request: VersionRequest) -> list[Engine]:
 
 
 def _imported_elsewhere(request: VersionRequest) -> str:
-    """A sentence if a module was not imported from the location of this version, else empty."""
     location, imported = request.location, [name for name in request.modules if name in sys.modules]
     for name in imported:
         file = getattr(sys.modules[name], "__file__", None)

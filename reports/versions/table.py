@@ -190,10 +190,8 @@ def _as_published(now: Entry, before: Entry) -> Entry:
 
 
 def change(before: Entry, after: Entry) -> str:
-    """The change between two versions, or an empty text.
-
-    "better" and "WORSE" mean a factor of more than three. "other" means two different outcomes without an error.
-    """
+    """The change between two versions, or an empty text. "better" and "WORSE" mean a factor of more than three. "other"
+    means two different outcomes without an error."""
     small, large = sorted((before.size, after.size))
     if small < large and (math.isinf(large) or large > WORSE * small):
         return "WORSE" if after.size > before.size else "better"
@@ -201,10 +199,8 @@ def change(before: Entry, after: Entry) -> str:
 
 
 def changes(entries: Iterable[Entry]) -> list[tuple[Entry, Entry, str]]:
-    """(before, after, `change`) of successive versions that differ, for each scene and method.
-
-    A version that does not support the scene is left out.
-    """
+    """(before, after, `change`) of successive versions that differ, for each scene and method. A version that does not
+    support the scene is left out."""
     lines: dict[tuple[Any, ...], list[Entry]] = {}
     for entry in sorted(entries, key=lambda entry: entry.identity):
         if entry.is_supported:

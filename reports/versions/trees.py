@@ -27,10 +27,8 @@ TREE_SEED = 12
 
 def engines_for_trees(engine: str, variants: Sequence[Engine]) -> tuple[Engine, ...]:
     """MuJoCo's variants, and a variant with the sparse factorisation, which MuJoCo uses from 60 degrees of freedom on.
-
     The default variant is left out, since every tree would be wrong with its soft joints. The result is empty for
-    pymunk, which would need too many iterations for these loops.
-    """
+    pymunk, which would need too many iterations for these loops."""
     if engine != "mujoco":
         return ()
     from engines.mujoco.methods import EXTENDED
@@ -42,10 +40,8 @@ def engines_for_trees(engine: str, variants: Sequence[Engine]) -> tuple[Engine, 
 
 @dataclass(frozen=True)
 class Trees(Task):
-    """The task that computes `miss` for `count` random trees in an engine.
-
-    Trees of 12 bodies can be analysed by hand. One tree in ten shows the fault of MuJoCo 4.0.0 with sparse Jacobians.
-    """
+    """The task that computes `miss` for `count` random trees in an engine. Trees of 12 bodies can be analysed by hand.
+    One tree in ten shows the fault of MuJoCo 4.0.0 with sparse Jacobians."""
 
     method: Engine
     bodies: Count = 12
@@ -65,9 +61,7 @@ class Trees(Task):
 @lru_cache(maxsize=4)
 def trees(bodies: int, loops: int, count: int) -> tuple[Mechanism, ...]:
     """Random trees. A pin connects each body to an earlier body or to the ground, and `loops` further pins close loops.
-
-    Lengths are about 1 m, and masses are 0.1 to 10 kg. Trees with nearly dependent rows are not used.
-    """
+    Lengths are about 1 m, and masses are 0.1 to 10 kg. Trees with nearly dependent rows are not used."""
     random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([TREE_SEED, bodies, loops])))
     drawn: list[Mechanism] = []
     while len(drawn) < count:
@@ -96,10 +90,8 @@ def _recipe(random: np.random.Generator, bodies: int, loops: int) -> Recipe:
 
 
 def miss(engine: Engine, mechanism: Mechanism) -> float:
-    """The largest error of the mean accelerations in the last step, relative to the largest ideal acceleration.
-
-    Angular accelerations are multiplied by the length of the mechanism. The result is NaN if a value is not finite.
-    """
+    """The largest error of the mean accelerations in the last step, relative to the largest ideal acceleration. Angular
+    accelerations are multiplied by the length of the mechanism. The result is NaN if a value is not finite."""
     dt = TREE_STEP * mechanism.time_scale
     motion = engine.build(mechanism, dt)(TREE_STEPS, 1)
     ideal, _ = constrained_acceleration(mechanism, motion.pose[-1], motion.twist[-1])
