@@ -29,10 +29,8 @@ def sentences() -> Mapping[str, Mapping[str, str]]:
 
 
 def glance_table(pages: Mapping[Page, Material], lines: Sequence[EngineLine], scenes: Mapping[str, str]) -> str:
-    """A Markdown table with a row for each registered engine; empty if no task of the page "engines" was run.
-
-    lines: rows of the compared scenes. scenes: name of a compared scene -> title.
-    """
+    """A Markdown table with a row for each registered engine; empty if no task of the page "engines" was run. lines:
+    rows of the compared scenes. scenes: name of a compared scene -> title."""
     material = next((material for page, material in pages.items() if page.name == ENGINES_PAGE.name), Material({}))
     answers = {task.method.name: answer for task in MATRIX if (answer := material.finished(task)) is not None}
     if not answers:
@@ -50,7 +48,6 @@ def glance_table(pages: Mapping[Page, Material], lines: Sequence[EngineLine], sc
 
 
 def _least_error(line: EngineLine | None) -> str:
-    """The least error of an engine's methods within the CPU budget, or the reason why there is no error."""
     built = [column for column in line.columns if not absence_reason(line, column)] if line is not None else []
     if line is None or not built:
         return DASH

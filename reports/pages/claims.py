@@ -87,11 +87,9 @@ def _names(failure: Failure, material: Material) -> dict[str, Any]:
 
 
 def settings_of_a_loop(material: Material) -> bool:
-    """Whether the statements of the page "settings" on MuJoCo hold.
-
-    A stiff loop alone or RK4 alone reduces the error by a factor below 2. A stiff loop with RK4 reduces the error by a
-    factor above 1000. The integrator implicitfast has the errors of Euler.
-    """
+    """Whether the statements of the page "settings" on MuJoCo hold. A stiff loop alone or RK4 alone reduces the error
+    by a factor below 2. A stiff loop with RK4 reduces the error by a factor above 1000. The integrator implicitfast has
+    the errors of Euler."""
     rows = Rows(material.sweep((guides.SETTINGS_LOOP,)))
 
     def method(name: str) -> Rows:

@@ -109,9 +109,7 @@ def scene_page(
     **fields: Any,
 ) -> Page:
     """A page on scenes. The template can look up rows of the scenes. `deviations.toml` has the known deviations.
-
-    `context` adds variables for the template. `fields`: further fields of `Page`.
-    """
+    `context` adds variables for the template. `fields`: further fields of `Page`."""
 
     def with_lookups(material: Material) -> Mapping[str, Any]:
         return {**lookups(material, scenes), **context(material)}

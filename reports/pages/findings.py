@@ -115,12 +115,8 @@ class Sources:
 
 @dataclass(frozen=True)
 class Finding:
-    """A finding with its numbers.
-
-    title, text: text in Markdown without the link to `page`.
-    contradicted: claims that the rows do not confirm.
-    lines, x, y: the lines of the picture and the labels of its axes.
-    """
+    """A finding with its numbers. title, text: text in Markdown without the link to `page`. contradicted: claims that
+    the rows do not confirm. lines, x, y: the lines of the picture and the labels of its axes."""
 
     name: str
     page: str
@@ -237,11 +233,8 @@ def faults(sources: Sources) -> dict[str, Any]:
 
 
 def exact(sources: Sources) -> dict[str, Any]:
-    """CPU times on the free four-bar.
-
-    `fine`: engine -> least CPU time for an error of 1e-6 rad. `wins`: whether `lagrange` is cheaper, by target and
-    engine.
-    """
+    """CPU times on the free four-bar. `fine`: engine -> least CPU time for an error of 1e-6 rad. `wins`: whether
+    `lagrange` is cheaper, by target and engine."""
     settings = advice(sources.rows.of("free_four_bar"), "angle")
     rows = {(setting.engine, target): setting.row for setting in settings for target in setting.targets}
     cost = {key: row.cpu if row is not None and row.cpu > 0 else math.inf for key, row in rows.items()}

@@ -167,10 +167,8 @@ def render_index(pages: Mapping[Page, Material], command: str, files: Mapping[st
 
 
 def render_readme(text: str, pages: Mapping[Page, Material]) -> str:
-    """The readme with its generated part, which has the lines of the page `your_loop` and their errors.
-
-    Raises ValueError if the readme lacks the marks around this part.
-    """
+    """The readme with its generated part, which has the lines of the page `your_loop` and their errors. Raises
+    ValueError if the readme lacks the marks around this part."""
     material = next((material for page, material in pages.items() if page.name == YOUR_LOOP.name), Material({}))
     part = environment().get_template(f"{YOUR_LOOP.name}/readme.md").render(dict(YOUR_LOOP.context(material)))
     return with_part(text, "loop", unmeasured.without_marks(part).strip())

@@ -73,10 +73,8 @@ def _charts(page: Page, rows: list[Measurement], material: Material) -> dict[str
 
 
 def render_page(page: Page, material: Material, command: str) -> dict[str, str]:
-    """The page's Markdown and its SVG pictures, by file name.
-
-    Raises jinja2.UndefinedError if the template uses a name that the page does not define.
-    """
+    """The page's Markdown and its SVG pictures, by file name. Raises jinja2.UndefinedError if the template uses a name
+    that the page does not define."""
     material = replace(material, rows=with_displayed_variants(material.rows))
     rows = judged(material.sweep(page.scenes), page.quantity)
     drawings = _charts(page, rows, material)

@@ -44,11 +44,9 @@ def colour(engine: str, engines: Iterable[str] = ()) -> str:
 
 
 def look(engine: str, variant: str, shown: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """The keyword arguments of a method's line in a chart. `shown`: engine -> variants in the chart.
-
-    The family determines colour and mark, and the variant determines dashes and filling, so that lines differ without
-    colours too. The three usual variants of a family look the same in every chart.
-    """
+    """The keyword arguments of a method's line in a chart. `shown`: engine -> variants in the chart. The family
+    determines colour and mark, and the variant determines dashes and filling, so that lines differ without colours too.
+    The three usual variants of a family look the same in every chart."""
     family = family_of(engine)
     methods = [(name, of_name) for name, variants in shown.items() if family_of(name) == family for of_name in variants]
     usual = [(methods[0][0], usual_variant) for usual_variant in USUAL_VARIANTS]

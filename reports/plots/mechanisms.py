@@ -49,11 +49,9 @@ def configurations(
     others: Mapping[str, tuple[Array, str, Any]] | None = None,
     columns: int = 3,
 ) -> Figure:
-    """A panel for each reference pose in `truth` (panels, bodies, 3).
-
-    `others` maps a method to (poses (panels, bodies, 3), role of the colour, dashes). A method is drawn in panels where
-    its error is visible. The legend marks methods without a visible error.
-    """
+    """A panel for each reference pose in `truth` (panels, bodies, 3). `others` maps a method to (poses (panels, bodies,
+    3), role of the colour, dashes). A method is drawn in panels where its error is visible. The legend marks methods
+    without a visible error."""
     others = others or {}
     looks = {
         name: {"color": getattr(LIGHT, colour), "linewidth": 1.4, "linestyle": dashes}

@@ -23,12 +23,8 @@ MIN_ASPECT = 0.7  # Smallest ratio of width to height; in a narrower panel the l
 
 @dataclass(frozen=True)
 class Path:
-    """A line through points (points, 2). Paths with the same label share an entry of the legend.
-
-    colour: a role of the theme.
-    framed: whether the limits of the axes include the path.
-    dot: whether the end of the path has a dot.
-    """
+    """A line through points (points, 2). Paths with the same label share an entry of the legend. colour: a role of the
+    theme. framed: whether the limits of the axes include the path. dot: whether the end of the path has a dot."""
 
     points: ArrayLike
     label: str = ""

@@ -21,10 +21,8 @@ FIGURE_WIDTH = 9.2  # inches; GitHub does not scale pictures of this width
 
 @dataclass(frozen=True)
 class Theme:
-    """A colour for each role. The defaults are for a light background.
-
-    Roles must have different colours, because a stylesheet finds a role in an SVG by its colour.
-    """
+    """A colour for each role. The defaults are for a light background. Roles must have different colours, because a
+    stylesheet finds a role in an SVG by its colour."""
 
     paper: str = "#fdfdfc"
     ink: str = "#1f2328"
@@ -164,9 +162,7 @@ def bare(panel: Axes, title: str) -> None:
 
 def svg(figure: Figure, title: str) -> str:
     """A figure in the colours of LIGHT as a reproducible SVG text. A stylesheet replaces the colours in a dark scheme.
-
-    `title` is the text for screen readers.
-    """
+    `title` is the text for screen readers."""
     out = io.StringIO()
     _in_powers(figure)
     with settings():

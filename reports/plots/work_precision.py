@@ -40,10 +40,8 @@ def pareto(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def forwards(members: Iterable[Measurement]) -> list[Measurement]:
-    """The rows of one method that cost less than each row at a smaller step; the largest step is first.
-
-    Methods that choose steps or iterations by trial runs may cost more at large steps.
-    """
+    """The rows of one method that cost less than each row at a smaller step; the largest step is first. Methods that
+    choose steps or iterations by trial runs may cost more at large steps."""
     forward: list[Measurement] = []
     for row in sorted(members, key=lambda row: row.step):
         if not forward or row.cpu < forward[-1].cpu:
@@ -68,7 +66,6 @@ def drawable(rows: Iterable[Measurement], field: str) -> list[Measurement]:
 
 
 def _scenes_with_lines(rows: Sequence[Measurement]) -> list[str]:
-    """The scenes in which a method has at least two points, or all scenes if there are none."""
     scenes = list(dict.fromkeys(row.scene for row in rows))
     with_lines = {scene for (scene, _, _), members in groups(rows).items() if len(members) > 1}
     return [scene for scene in scenes if scene in with_lines] or scenes
@@ -111,7 +108,6 @@ Pairs = list[tuple[float, float]]
 def _chart(
     shown: Sequence[Measurement], scenes: Sequence[str], field: str, label: str, series: Callable[..., Pairs]
 ) -> tuple[Figure, list[Axes], list[Line2D]]:
-    """The figure, a panel for each scene, and the legend's entries. A method is a line through `series(rows)`."""
     variants = _variants_by_engine(shown)
     figure, panels = _panels(scenes, 3.6)
     for index, (panel, scene) in enumerate(zip(panels, scenes, strict=True)):
@@ -129,10 +125,8 @@ def _chart(
 
 
 def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
-    """A panel for each scene with error against CPU time and the Pareto front of all rows.
-
-    A featured method is a line through its rows from `forwards`. Rows of other methods are small grey dots.
-    """
+    """A panel for each scene with error against CPU time and the Pareto front of all rows. A featured method is a line
+    through its rows from `forwards`. Rows of other methods are small grey dots."""
 
     def pairs(members: Iterable[Measurement]) -> Pairs:
         return [(1e3 * row.cpu, getattr(row, field)) for row in members]
@@ -226,11 +220,7 @@ CostErrorPairs = Sequence[tuple[float, float]]  # pairs (CPU seconds per simulat
 
 @dataclass(frozen=True)
 class ComparedRow:
-    """A row of panels.
-
-    lines: column -> engine -> points.
-    absent: column -> reason -> engines without a line.
-    """
+    """A row of panels. lines: column -> engine -> points. absent: column -> reason -> engines without a line."""
 
     title: str
     axis: str

@@ -137,10 +137,8 @@ PageRows = tuple[Page, Sequence[Measurement]]  # a page, and the compared rows o
 
 
 def engine_lines(entries: Iterable[PageRows]) -> list[EngineLine]:
-    """A line for each scene and engine with rows.
-
-    If the variant "tuned" needs our code in a scene, the column SETTINGS has other methods with documented settings.
-    """
+    """A line for each scene and engine with rows. If the variant "tuned" needs our code in a scene, the column SETTINGS
+    has other methods with documented settings."""
     return [
         _engine_line(page, scene, engine, [row for row in rows if row.scene == scene.name])
         for page, rows in entries
@@ -231,10 +229,8 @@ def _by_engine(lines: Sequence[EngineLine]) -> Iterator[tuple[str, list[EngineLi
 
 
 def error_within(rows: Sequence[Measurement], name: str, cost: float) -> float:
-    """The least error of a method's runs that take at most this CPU time [s/s]; infinite without such a run.
-
-    A run counts with the largest error at its step and all smaller steps, since two errors may cancel at one step.
-    """
+    """The least error of a method's runs that take at most this CPU time [s/s]; infinite without such a run. A run
+    counts with the largest error at its step and all smaller steps, since two errors may cancel at one step."""
     worst, least = 0.0, math.inf
     for row in sorted(rows, key=lambda row: row.step):
         error = getattr(row, name)
@@ -292,10 +288,8 @@ def equal_error(entries: Iterable[PageRows]) -> dict[str, str]:
 
 
 def equal_step(entries: Iterable[PageRows], steps: Mapping[str, float] = USUAL_STEPS) -> dict[str, str]:
-    """A table for each engine with errors at `steps` (name -> step [s]) and the effect of smaller steps.
-
-    The header of a method has its number of inner runs, unless the number depends on the scene.
-    """
+    """A table for each engine with errors at `steps` (name -> step [s]) and the effect of smaller steps. The header of
+    a method has its number of inner runs, unless the number depends on the scene."""
     last, lines = list(steps.values())[-1], engine_lines(entries)
     runs: dict[tuple[str, Column], set[str]] = {}
     for line in lines:
@@ -327,7 +321,6 @@ def _errors_at_steps(line: EngineLine, engine: Engine, rows: Sequence[Measuremen
 
 
 def _effect_of_smaller_steps(sweep: Sweep, rows: Iterable[Measurement], errors: Sequence[float]) -> str:
-    """The change of the error at steps that are smaller than those of the table."""
     finest = min((row for row in rows if row.purpose == "sweep"), key=lambda row: row.step)
     if not Outcome(finest.outcome).comparable:
         return f"**{finest.outcome}** at {step_words(finest.step)}"

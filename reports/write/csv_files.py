@@ -87,11 +87,8 @@ DIGESTS = "digests.csv"
 
 
 def digests_csv(files: Mapping[str, str]) -> str:
-    """A CSV with the digests of a report's tables and pages.
-
-    Pictures are left out, because no number is read from a picture. Timings are left out, because a folder may contain
-    timings of an earlier run.
-    """
+    """A CSV with the digests of a report's tables and pages. Pictures are left out, because no number is read from a
+    picture. Timings are left out, because a folder may contain timings of an earlier run."""
     names = sorted(name for name in files if name.endswith((".csv", ".md")) and name not in (DIGESTS, "timings.csv"))
     return "".join(["file,digest\n", *(f"{name},{digest(files[name], SHORT)}\n" for name in names)])
 

@@ -24,11 +24,8 @@ from reports.write.templates import template
 
 @dataclass(frozen=True)
 class RenderedExperiment:
-    """The texts and tables of an experiment.
-
-    observations, grid: tables in Markdown, which are empty without observations or rows.
-    unrun: whether the experiment has cells or tasks of which none was run.
-    """
+    """The texts and tables of an experiment. observations, grid: tables in Markdown, which are empty without
+    observations or rows. unrun: whether the experiment has cells or tasks of which none was run."""
 
     title: str
     expected: str

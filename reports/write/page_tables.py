@@ -98,9 +98,7 @@ class Advice:
 
 def advice(rows: Sequence[Measurement], name: str, order: Sequence[str] = ()) -> tuple[Advice, ...]:
     """The cheapest method for each engine and target, from the rows of one scene. `order`: methods in the page's order.
-
-    A step counts only if all smaller steps of its method meet the target too, since errors may cancel at one step.
-    """
+    A step counts only if all smaller steps of its method meet the target too, since errors may cancel at one step."""
     verdicts = by_method(sweeps(rows), name)
     rank = {method: index for index, method in enumerate(order)}
     advised: list[Advice] = []

@@ -42,10 +42,8 @@ def _version(package: str) -> str:
 
 
 def still_installed(versions: str) -> bool:
-    """Whether the installed packages have these versions, which are a result of `row_versions`.
-
-    Only Python's minor version is compared, since a patch release changes no number of an engine.
-    """
+    """Whether the installed packages have these versions, which are a result of `row_versions`. Only Python's minor
+    version is compared, since a patch release changes no number of an engine."""
     python, *others = versions.split(", ")
     installed = [f"Python {platform.python_version()}", *(_version(line.split(" ", 1)[0]) for line in others)]
     return others == installed[1:] and python.split(".")[:2] == installed[0].split(".")[:2]

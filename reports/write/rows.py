@@ -70,11 +70,9 @@ class Rows(tuple[Measurement, ...]):
 
 
 def lookups(material: Material, scenes: Iterable[Scene]) -> dict[str, Any]:
-    """The functions by which templates look up rows of scenes.
-
-    Templates can call `best(scene, engine, variant)`, `sweep(scene, engine, variant, quantity)`, `at(scene, engine,
-    variant, every)` and `ended(scene, engine, variant)`. The function `ended` returns the outcomes of the method.
-    """
+    """The functions by which templates look up rows of scenes. Templates can call `best(scene, engine, variant)`,
+    `sweep(scene, engine, variant, quantity)`, `at(scene, engine, variant, every)` and `ended(scene, engine, variant)`.
+    The function `ended` returns the outcomes of the method."""
     rows = Rows(material.sweep(scenes))
 
     def of(scene: str, engine: str, variant: str) -> Rows:

@@ -79,10 +79,8 @@ def display_width(text: str) -> int:
 def markdown(
     header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1, enforcement: Mapping[str, str] | None = None
 ) -> str:
-    """A Markdown table; the first `left` columns are aligned to the left.
-
-    `enforcement` (method -> what enforces the joints) becomes the second column, after the methods.
-    """
+    """A Markdown table; the first `left` columns are aligned to the left. `enforcement` (method -> what enforces the
+    joints) becomes the second column, after the methods."""
     if enforcement:
         header, left = [header[0], ENFORCED_BY, *header[1:]], left + 1
         rows = [[row[0], enforcement.get(row[0], DASH), *row[1:]] for row in rows]
@@ -115,10 +113,8 @@ def order_rows(swept: Iterable[Sweep], quantities: Sequence[str]) -> list[list[s
 
 
 def sweep_words(sweep: Sweep, lost: str = "") -> str:
-    """A text such as '1.99 (±0.13, 4 points)', '3.9 (2 points, unchecked), then rounding' or 'plateau **2e-5**'.
-
-    `lost` is the outcome at the smallest step, if that run can't be compared.
-    """
+    """A text such as '1.99 (±0.13, 4 points)', '3.9 (2 points, unchecked), then rounding' or 'plateau **2e-5**'. `lost`
+    is the outcome at the smallest step, if that run can't be compared."""
     order = ""
     if sweep.points >= 2:
         checked = (
@@ -147,10 +143,8 @@ def error_words(row: Measurement | None, name: str) -> str:
 
 
 def outcome_grid(rows: Iterable[Measurement]) -> str:
-    """A Markdown table with a line for each method and a column for each step.
-
-    Raises ValueError if two rows have the same method and step.
-    """
+    """A Markdown table with a line for each method and a column for each step. Raises ValueError if two rows have the
+    same method and step."""
     rows = list(rows)
     steps = sorted({row.step for row in rows}, reverse=True)
     by_method_and_step: dict[str, dict[float, str]] = {}
@@ -164,7 +158,6 @@ def outcome_grid(rows: Iterable[Measurement]) -> str:
 
 
 def _outcome_in_brief(row: Measurement) -> str:
-    """The angle error, or the outcome if the run can't be compared. The gap is added for a torn joint."""
     if Outcome(row.outcome).comparable:
         return f"{number(row.angle)} rad"
     if row.outcome == Outcome.TORN and math.isfinite(row.gap):

@@ -77,9 +77,7 @@ def inert_page(text: str) -> str:
 @cache
 def environment(folder: Path = TEMPLATES) -> Environment:
     """The environment of templates. An undefined name raises an exception; an unknown number becomes UNKNOWN_MARK.
-
-    Templates in another folder have the prefix "own/", so that they can't replace our templates.
-    """
+    Templates in another folder have the prefix "own/", so that they can't replace our templates."""
     out = Environment(
         loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
         undefined=StrictUndefined,

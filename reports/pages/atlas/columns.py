@@ -100,11 +100,9 @@ def columns_of(stability_map: StabilityMap, engines: Iterable[Engine], points: i
 
 
 def run_columns(columns: Sequence[MapColumn], run: RunCells, stride: int) -> list[dict[int, Measurement]]:
-    """For each column, the rows by the index of the step.
-
-    Every `stride`-th step is run, and bisection finds the border between two steps with different outcomes. A region
-    that is narrower than the stride may be missed. `run` is called once for each round of bisection.
-    """
+    """For each column, the rows by the index of the step. Every `stride`-th step is run, and bisection finds the border
+    between two steps with different outcomes. A region that is narrower than the stride may be missed. `run` is called
+    once for each round of bisection."""
     rows: list[dict[int, Measurement]] = [{} for _ in columns]
     wanted = [sorted({*range(0, len(column.steps), stride), len(column.steps) - 1}) for column in columns]
     while any(wanted):
@@ -183,11 +181,9 @@ def tearing_step(scene: Scene, mechanism: Mechanism, engine: Engine, least: floa
 
 
 def residual_of_sweeps(mechanism: Mechanism, engine: Engine) -> float:
-    """The fraction of the slowest mode's error that remains after the iterations of a step [1].
-
-    The result is NaN for an engine without a fixed number of Gauss-Seidel iterations. If each step should close the
-    whole gap, gaps grow when this fraction is above 1/2 (`engines.pymunk.convergence`).
-    """
+    """The fraction of the slowest mode's error that remains after the iterations of a step [1]. The result is NaN for
+    an engine without a fixed number of Gauss-Seidel iterations. If each step should close the whole gap, gaps grow when
+    this fraction is above 1/2 (`engines.pymunk.convergence`)."""
     count = engine.iterations_of(mechanism)
     return math.nan if count is None else float(convergence_factor(mechanism) ** count)
 

@@ -71,10 +71,8 @@ def outcome_table(columns: Sequence[StoredColumn]) -> str:
 
 
 def largest_step(columns: Sequence[StoredColumn], bound: float) -> str:
-    """The largest step such that all runs at this step and at smaller steps finish with errors below `bound` [rad].
-
-    The result is a dash if there is no such step. A cell that was not run has the error at the next larger step.
-    """
+    """The largest step such that all runs at this step and at smaller steps finish with errors below `bound` [rad]. The
+    result is a dash if there is no such step. A cell that was not run has the error at the next larger step."""
     largest = DASH
     errors = [_errors_of_steps(column) for column in columns]
     for index, step in reversed(list(enumerate(columns[0].steps))):
@@ -247,7 +245,6 @@ def _draw_regions(panel: Axes, columns: Sequence[StoredColumn], whole: bool) -> 
 
 
 def _draw_predictions(panel: Axes, columns: Sequence[StoredColumn], stability_map: StabilityMap) -> set[str]:
-    """Draw the predictions that lie within the panel, and return their names."""
     values = np.array([column.value for column in columns])
     low, high = panel.get_ylim()
     names = set()

@@ -26,11 +26,9 @@ MIN_STEPS = 10  # number of steps of a run at the largest step
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """A map of outcomes over step and parameter. `subjects.toml` explains the fields that are missing here.
-
-    make: parameter value -> scene.
-    frequency: scene -> frequency of the fastest motion [rad/s], which predicts the step of failure.
-    """
+    """A map of outcomes over step and parameter. `subjects.toml` explains the fields that are missing here. make:
+    parameter value -> scene. frequency: scene -> frequency of the fastest motion [rad/s], which predicts the step of
+    failure."""
 
     name: str
     title: str
@@ -52,10 +50,8 @@ class StabilityMap:
         return tuple(float(f"{value:.4g}") for value in np.geomspace(low, high, points))
 
     def steps(self, points: int) -> tuple[tuple[int, int], ...]:
-        """Pairs (samples, steps between samples) of at most `points` runs with decreasing steps [s].
-
-        A run has 10 to 20 samples, so that the reference motion is evaluated at few instants.
-        """
+        """Pairs (samples, steps between samples) of at most `points` runs with decreasing steps [s]. A run has 10 to 20
+        samples, so that the reference motion is evaluated at few instants."""
         by_count: dict[int, tuple[int, int]] = {}
         for doubling in np.linspace(0.0, self.doublings, points):
             every = 2 ** int(doubling)

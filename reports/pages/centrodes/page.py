@@ -34,9 +34,7 @@ MAX_POSES_CHECKED = 101
 
 def returned(curves: Centrodes) -> tuple[float, float]:
     """The largest distance [m] of the rolling body's origin from the poses, and the checked range of rotation [rad].
-
-    Raises InvalidMechanism if the curves can't roll on each other.
-    """
+    Raises InvalidMechanism if the curves can't roll on each other."""
     rolling = curves.rolling()
     low, high = rolling.limits
     inside = np.flatnonzero((curves.theta >= low) & (curves.theta <= high))
@@ -204,7 +202,6 @@ def context(material: Material) -> Mapping[str, Any]:
 
 
 def _lesson(rows: list[tuple[Cell, float, float, float]]) -> str:
-    """A sentence on the run with the largest ratio of centre error to angle error."""
     ratios = [(centre / angle, row) for row in rows if (angle := row[2]) > 0 and math.isfinite(centre := row[1])]
     if not ratios:
         return ""

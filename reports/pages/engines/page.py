@@ -84,11 +84,8 @@ HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 
 @dataclass(frozen=True)
 class Capabilities(BuildingTask):
-    """The elements that an engine builds.
-
-    Each line of ELEMENT_EXAMPLES has a word for the table. The reason of a refusal has the key `reason_key(line)`. A
-    run determines `reactions` and `width`.
-    """
+    """The elements that an engine builds. Each line of ELEMENT_EXAMPLES has a word for the table. The reason of a
+    refusal has the key `reason_key(line)`. A run determines `reactions` and `width`."""
 
     description: ClassVar[str] = "what it builds"
 
@@ -106,7 +103,6 @@ class Capabilities(BuildingTask):
         return values
 
     def _build(self, mechanism: Mechanism) -> tuple[str, str]:
-        """The word for the table, and the reason of a refusal or ""."""
         try:
             self.method.build(mechanism, BUILD_STEP)
         except Unsupported as reason:

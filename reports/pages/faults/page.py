@@ -69,10 +69,8 @@ class FaultScript(Task):
         return DEFAULT if self.name.startswith("mjx") else None
 
     def run(self) -> Values:
-        """`expected` and `found`, in the script's unit, and `version`, the version of the engine's package.
-
-        Raises Unsupported if the engine is an extra that can't run here.
-        """
+        """`expected` and `found`, in the script's unit, and `version`, the version of the engine's package. Raises
+        Unsupported if the engine is an extra that can't run here."""
         if self.engine is not None:  # JAX keeps the settings of its first import, so this needs another process
             DEFAULT.require()
             try:
@@ -111,11 +109,9 @@ SCRIPTS: Mapping[str, FaultScript] = {
 
 @dataclass(frozen=True)
 class Offsets(Task):
-    """The velocity across the groove that pymunk's GrooveJoint creates, for several distances of the anchor.
-
-    A body of 1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The anchor is at the distances `offsets`
-    [m] from the centre of mass, at an angle of 45 degrees to the groove.
-    """
+    """The velocity across the groove that pymunk's GrooveJoint creates, for several distances of the anchor. A body of
+    1 kg and 1 kg m^2 slides at 1 m/s along a groove in the ground. The anchor is at the distances `offsets` [m] from
+    the centre of mass, at an angle of 45 degrees to the groove."""
 
     offsets: tuple[float, ...]
     seconds: ClassVar[float] = 3e-3

@@ -52,12 +52,9 @@ def figures(material: Material) -> dict[str, str]:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Numbers for the text.
-
-    exact: period and singular instants [s] by scene.
-    failed: function of (scene, engine, variant) -> phrase that states whether all motions are wrong.
-    soft: number and range of the errors of SOFT_LOOPS, or UNMEASURED if not all these motions are wrong.
-    """
+    """Numbers for the text. exact: period and singular instants [s] by scene. failed: function of (scene, engine,
+    variant) -> phrase that states whether all motions are wrong. soft: number and range of the errors of SOFT_LOOPS, or
+    UNMEASURED if not all these motions are wrong."""
     look_up = lookups(material, LINKAGES_IN_A_ROW)
 
     def failed(scene: str, engine: str, variant: str) -> Any:

@@ -72,7 +72,6 @@ def _energy(state: Array) -> float:
 
 @lru_cache(maxsize=len(ACROBOT_STEPS))
 def _path(angle: float, step: float) -> Array:
-    """Angles and rates (steps + 1, 4) by RK4."""
     state = np.array([angle, 0.0, 0.0, 0.0])
     states = [state]
     for _ in range(round(HORIZON / step)):

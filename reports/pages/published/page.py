@@ -58,10 +58,8 @@ def relative(angles: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def compared(scene: Andrews) -> list[dict[str, Any]]:
     """Computed and published numbers: angles at END_TIME, and accelerations and multipliers at t = 0 that are not zero.
-
     A multiplier of the test set is minus our reaction. The test set has the equation M q'' = f - G^T lambda, and our
-    mechanism M a = f + J^T reaction. The rows of the joint P have the same sign in both equations.
-    """
+    mechanism M a = f + J^T reaction. The rows of the joint P have the same sign in both equations."""
     motion, mechanism = scene.motion([0.0, END_TIME]), scene.mechanism()
     free = mechanism.unconstrained(motion.pose[0], motion.twist[0])
     pushed = mechanism.rows(motion.pose[0]).T @ motion.reaction[0]

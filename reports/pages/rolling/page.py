@@ -70,9 +70,7 @@ def beyond_friction(material: Material) -> list[Observation]:
 
 def after_friction(material: Material) -> dict[str, Any]:
     """`least`: the smallest ratio of the error at the end to the largest comparable error, in runs with a contact.
-
-    `slips`, `hops`: the instants at which a real contact slips and hops [s].
-    """
+    `slips`, `hops`: the instants at which a real contact slips and hops [s]."""
     scene = RollingOnCircle()
     contacts = [cell for cell in BEYOND_FRICTION if cell.engine in PUBLIC]
     errors = [position_errors(cell, run) for cell, run in material.motions(contacts).items()]
@@ -131,10 +129,8 @@ HILL_SCENE = RollingOnCircle()  # the scene is shared, because it caches its las
 
 
 def compared(scene: Scene, engine: Engine) -> bool:
-    """Whether a method is run in a scene.
-
-    ROLL_CONSTRUCTIONS are run on the ellipse only. The exact solver is left out in two scenes, where it is slow.
-    """
+    """Whether a method is run in a scene. ROLL_CONSTRUCTIONS are run on the ellipse only. The exact solver is left out
+    in two scenes, where it is slow."""
     if engine in ROLL_CONSTRUCTIONS:
         return scene.name == RollingEllipse.name
     return not (engine.name == "lagrange" and scene.name in (EllipticGears.name, RollingInRing.name))

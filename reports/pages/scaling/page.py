@@ -51,11 +51,8 @@ FIT_POINTS = 3  # the fit uses the largest sizes, at which constant costs are sm
 
 @dataclass(frozen=True)
 class SizePoint:
-    """The result of a method for a chain of `size` links.
-
-    step: CPU time of a step [s].
-    error: the largest angle error [rad], or NaN if the run was made for its CPU time only.
-    """
+    """The result of a method for a chain of `size` links. step: CPU time of a step [s]. error: the largest angle error
+    [rad], or NaN if the run was made for its CPU time only."""
 
     size: int
     step: float
@@ -96,9 +93,7 @@ def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSer
 
 def exponent(sizes: Iterable[float], values: Iterable[float], last: int = FIT_POINTS) -> tuple[float, int, int]:
     """The slope of log value over log size for the `last` finite points, and the smallest and largest size of the fit.
-
-    With fewer than two points the result is (NaN, 0, 0).
-    """
+    With fewer than two points the result is (NaN, 0, 0)."""
     pairs = [(n, v) for n, v in zip(sizes, values, strict=True) if math.isfinite(v) and v > 0][-last:]
     if len(pairs) < 2:
         return math.nan, 0, 0

@@ -151,9 +151,7 @@ CONSTRUCTION_HEADER = (
 
 def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | None = None) -> str:
     """A Markdown table of errors and cost at COMPARED_STEP, and of convergence; the best construction is first.
-
-    Constructions without a run near that step are left out.
-    """
+    Constructions without a run near that step are left out."""
     verdicts = by_method(sweeps(rows), "position")
     lines = []
     for key, members in groups(rows).items():
@@ -202,11 +200,9 @@ def uniform_conditions() -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """Tables, and functions that return UNMEASURED or a row of the sleigh.
-
-    at: the method's row with the step nearest to a step [s]. least: the row with the least position error.
-    finest: a method's row at the smallest step with a position error.
-    """
+    """Tables, and functions that return UNMEASURED or a row of the sleigh. at: the method's row with the step nearest
+    to a step [s]. least: the row with the least position error. finest: a method's row at the smallest step with a
+    position error."""
     rows = Rows(material.sweep((SLEIGH_AHEAD,)))
     enforcement = enforcement_by_method(
         cell for cell in material.rows if cell.scene == SLEIGH_AHEAD and cell.purpose == "sweep"

@@ -34,10 +34,8 @@ UNCHANGED_FIELDS = ("links", "duration", "horizon", "branch", "friction", "densi
 
 
 def draw(scene: Scene, number: int) -> Mechanism:
-    """Random mechanism `number` of the scene's kind. Lengths, masses and rates are scaled, and angles are random.
-
-    The draw is repeated until the reference motion has more than LEAST_SAMPLES samples.
-    """
+    """Random mechanism `number` of the scene's kind. Lengths, masses and rates are scaled, and angles are random. The
+    draw is repeated until the reference motion has more than LEAST_SAMPLES samples."""
     digest = hashlib.sha256(f"{COMMIT} {scene.name} {number}".encode()).hexdigest()
     random = np.random.default_rng(int(digest, 16))
     while True:
@@ -119,11 +117,9 @@ class BeforeAndAfter(Task):
     words: ClassVar[str] = "with the lines: {0.linkage}"
 
     def run(self) -> Values:
-        """`gap` (2,) [px] and `angle` (2,) [rad]: the largest errors without and with the lines.
-
-        Angles are NaN if shapes touch or if the space is not an ideal mechanism. `iterations` is 0 if the lines do not
-        change the space.
-        """
+        """`gap` (2,) [px] and `angle` (2,) [rad]: the largest errors without and with the lines. Angles are NaN if
+        shapes touch or if the space is not an ideal mechanism. `iterations` is 0 if the lines do not change the
+        space."""
         make = LINKAGES[self.linkage]
         shipped, closed, touched = make(), make(), []
         shipped.on_collision(begin=lambda *arguments: touched.append(True))

@@ -30,11 +30,8 @@ LOOP, SLIDER, CHAIN, DISC, SKATE = map(
 
 @dataclass(frozen=True)
 class PastedCase:
-    """A mechanism in an engine, without and with the lines of the page.
-
-    before: the engine with default settings, or None if it lacks the joint.
-    after: the engine with the lines of the page.
-    """
+    """A mechanism in an engine, without and with the lines of the page. before: the engine with default settings, or
+    None if it lacks the joint. after: the engine with the lines of the page."""
 
     title: str
     page: str
@@ -134,11 +131,8 @@ def code_before_step(engine: str) -> str:
 
 
 def context(material: Material) -> Mapping[str, Any]:
-    """The lines and tables.
-
-    reactions: engine -> relative error of the joint forces in the closed linkage.
-    fresh: engine -> `spread` of the errors in random closed linkages, without and with the lines.
-    """
+    """The lines and tables. reactions: engine -> relative error of the joint forces in the closed linkage. fresh:
+    engine -> `spread` of the errors in random closed linkages, without and with the lines."""
     earlier = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
     first = {"mujoco": MUJOCO_CASES[0], "pymunk": PYMUNK_CASES[0]}
     rows = {name: material.rows.get(cell(case, case.after)) for name, case in first.items()}
