@@ -24,7 +24,6 @@ from reports.model.ending import BadInput, Broken, visible
 from reports.model.outcomes import Loss
 from reports.run import supervisor, worker
 from reports.run.files import temporary_folder, write_whole
-from reports.run.running import worker_count
 
 MAX_WIDTH = 120  # Largest number of columns of the output.
 OVERWRITE = "\r\x1b[K"  # Erases the current line of a terminal.
@@ -165,7 +164,7 @@ def _answers(requests: list[CheckRequest], limit: float) -> Answers:
         )
         options: Any = {"watch": progress, "wall": limit + 60}
         try:
-            for item, result, _ in supervisor.supervise(run_check, items, limit, worker_count(), **options):
+            for item, result, _ in supervisor.supervise(run_check, items, limit, worker.worker_count(), **options):
                 if isinstance(result, Loss):
                     result = Refused(f"{item.word}: {LOSSES.get(result.outcome, LOST).format(result.sentence)}")
                 answers[item.word] = result

@@ -10,7 +10,6 @@ from typing import Annotated
 
 import typer
 
-from engines.device import DEVICE, DEVICES
 from reports.model.ending import BadInput, FileTrouble, nearest
 from reports.run.files import is_stream
 
@@ -55,6 +54,8 @@ DeviceName = Annotated[
 def choose_device(device: str | None) -> None:
     """Set the device of engines for this process and its workers. Raises BadInput for an unknown device."""
     if device is not None:
+        from engines.device import DEVICE, DEVICES  # The package imports numpy and scipy, which takes half a second.
+
         if device not in DEVICES:
             raise BadInput(f"--device {device}: it must be cpu or cuda")
         os.environ[DEVICE] = device

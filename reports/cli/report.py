@@ -30,9 +30,10 @@ from reports.pages import index, rendering
 from reports.pages.claims import contradicted
 from reports.pages.four_bar.page import MOVING_EVERY, MOVING_METHODS, MOVING_PICTURE, MOVING_TASKS
 from reports.run.files import write_whole
-from reports.run.running import missing, worker_count
+from reports.run.running import missing
 from reports.run.store import Store
 from reports.run.supervisor import WorkersLost, supervise
+from reports.run.worker import worker_count
 from reports.search import page as search_page
 from reports.search import plan
 from reports.site.animated import animation, shown

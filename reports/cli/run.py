@@ -43,7 +43,7 @@ from reports.model.tasks import Task
 from reports.run import cluster
 from reports.run.running import TIME_LIMIT, run_into
 from reports.run.store import Store
-from reports.write.tables import SUMMARY_HEADER, summary_rows
+from reports.write.row_tables import SUMMARY_HEADER, summary_rows
 
 
 def run(

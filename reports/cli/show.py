@@ -36,7 +36,8 @@ from reports.model.quantities import QUANTITIES
 from reports.run.running import support
 from reports.run.store import Store
 from reports.write import page_tables
-from reports.write.tables import ERROR_HEADER, error_rows, order_rows, step_words
+from reports.write.row_tables import ERROR_HEADER, error_rows, order_rows
+from reports.write.tables import step_words
 
 
 def list_command(scene: Scenes = None, engine: EngineName = None, variant: VariantName = None) -> None:

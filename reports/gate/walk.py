@@ -30,8 +30,9 @@ from reports.model.cells import Cell, mechanism_of
 from reports.model.checks import CHANGE, Check, complaints, nearest
 from reports.model.measure import Measurement
 from reports.model.outcomes import Loss
-from reports.run.running import run_cells, worker_count
+from reports.run.running import run_cells
 from reports.run.supervisor import supervise
+from reports.run.worker import worker_count
 
 JUDGE_LIMIT = 600.0  # CPU seconds of one run of the judge. The largest scenes need several minutes.
 

@@ -25,7 +25,8 @@ from reports.write import unmeasured
 from reports.write.columns import Column, EngineLine
 from reports.write.page_tables import COMPARED_STEP, TARGETS
 from reports.write.provenance import machine, versions
-from reports.write.tables import DASH, error_words, markdown
+from reports.write.row_tables import error_words
+from reports.write.tables import DASH, markdown
 from reports.write.templates import environment, inert_page, link, with_part
 
 

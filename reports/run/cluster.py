@@ -25,9 +25,9 @@ from reports.model.ending import BadInput, describe
 from reports.model.fingerprint import versions_of
 from reports.model.outcomes import Loss, Outcome
 from reports.run.files import temporary_folder
-from reports.run.running import expected_seconds, worker_count
+from reports.run.running import expected_seconds
 from reports.run.supervisor import TICK, Answer, Supervise, Watch, WorkersLost, supervise
-from reports.run.worker import process_start
+from reports.run.worker import process_start, worker_count
 
 WORDS = re.compile(r"(?:tcp|tls)://\S+:\d+|local:([1-9]\d{0,2})")
 FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -16,6 +15,7 @@ from reports.model.tasks import Answer, Task, answered
 from reports.run.files import folder_for
 from reports.run.store import ELSEWHERE, Store
 from reports.run.supervisor import Supervise, Watch, WorkersLost, supervise
+from reports.run.worker import worker_count
 
 TIME_LIMIT = 60.0  # Limit of CPU time for one cell [s], which only a hang reaches.
 LEAST = 3e-3  # Time that a cell takes in addition to stepping [s].
@@ -25,11 +25,6 @@ Item = TypeVar("Item", bound=Cell | Task)
 
 def work(timed: bool, truths: Path | None, item: Cell | Task) -> Measurement | Answer:
     return measure(item, timed, truths) if isinstance(item, Cell) else answered(item)
-
-
-def worker_count() -> int:
-    """Number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def expected_seconds(item: Any) -> float:

@@ -56,6 +56,11 @@ def cpu_time(process: int) -> float | None:
         return None
 
 
+def worker_count() -> int:
+    """Number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def stop_all() -> None:
     """Kill every worker of this process before an exit without cleanup."""
     for child in multiprocessing.active_children():

@@ -26,7 +26,8 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
 from reports.write.page_tables import EQUAL_COST_FACTOR, TARGETS, reliable
-from reports.write.tables import DASH, error_words, markdown, milliseconds, number, step_words
+from reports.write.row_tables import error_words
+from reports.write.tables import DASH, markdown, milliseconds, number, step_words
 
 
 class Column(StrEnum):

@@ -16,7 +16,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Motion, trajectory_of
-from reports.write import tables
+from reports.write import row_tables, tables
 from reports.write.columns import displayed_variant
 from reports.write.rows import Rows
 from reports.write.templates import template
@@ -45,11 +45,12 @@ def render_experiment(failure: Failure, material: Material) -> RenderedExperimen
     observations = tuple(failure.observations(material)) if failure.observations else ()
     was_run = rows or any(task in material.answers for task in failure.tasks)
     lines = [[seen.method, seen.setting, seen.outcome] for seen in observations]
+    grid = row_tables.cell_table(rows, failure.columns) if failure.columns else row_tables.outcome_grid(rows)
     return RenderedExperiment(
         failure.title,
         template(failure.expected).render(**failure.context(material)),
         tables.markdown(["method", "setting", "outcome"], lines, left=3) if observations else "",
-        (tables.cell_table(rows, failure.columns) if failure.columns else tables.outcome_grid(rows)) if rows else "",
+        grid if rows else "",
         template(failure.remark).render(at=at, count=experiment.count, **failure.context(material)),
         unrun=not was_run and bool(failure.cells or failure.tasks),
     )

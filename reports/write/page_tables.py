@@ -14,7 +14,8 @@ from reports.model.convergence import ROOM_SOFT, Sweep, by_method, groups, sweep
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
-from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words, sweep_words
+from reports.write.row_tables import sweep_words
+from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words
 
 # Step [s] at which methods are compared. A grid without this step uses its nearest step.
 COMPARED_STEP = 1e-3

@@ -28,7 +28,7 @@ from reports.model.page import Failure, Material, Page
 from reports.model.quantities import quantity
 from reports.pages.skate.page import PAGE as SKATE
 from reports.write import columns as engine_tables
-from reports.write import csv_files, tables
+from reports.write import csv_files, row_tables, tables
 from reports.write.columns import Column
 from reports.write.experiments import render_experiment, without_incomparable_errors
 from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
@@ -124,16 +124,16 @@ def printed() -> Iterator[str]:
     yield "\n".join(tables.text_table(["a", "b"], [["wide", "-"]]))
     yield tables.markdown(["a", "b"], [["1|2", "3\n4"]], left=1)
     yield "## Each quantity under its name"
-    yield tables.markdown(tables.ERROR_HEADER, tables.error_rows([row()]))
+    yield tables.markdown(row_tables.ERROR_HEADER, row_tables.error_rows([row()]))
     yield "## Sweeps, and those whose finest step is torn"
     for item in (
         *(sweep(Verdict.FALLS, 1.994, 4), sweep(Verdict.FALLS), sweep(Verdict.PLATEAU, 1.1, 3, 2.3e-5)),
         *(sweep(Verdict.ROUNDING, 3.9, 3), sweep(Verdict.LEVELS, 1.1, 3), sweep(Verdict.GROWS)),
         *(sweep(Verdict.ERRATIC), sweep(Verdict.TOO_FEW, best=NAN)),
     ):
-        yield f"- {tables.sweep_words(item)} | {tables.sweep_words(item, 'torn')}"
+        yield f"- {row_tables.sweep_words(item)} | {row_tables.sweep_words(item, 'torn')}"
     yield "## Outcomes by step"
-    yield tables.outcome_grid(
+    yield row_tables.outcome_grid(
         [
             row_of("a x", step=1e-3, angle=1.3e-5),
             row_of("a x", step=1e-1, outcome=Outcome.TORN, gap=1.7e-2),
@@ -150,7 +150,7 @@ def printed() -> Iterator[str]:
         *falling("toy exact", (1e-3, 1e-13)),
         row_of("toy lost", outcome=Outcome.DIVERGED),
     ]
-    yield tables.markdown(tables.SUMMARY_HEADER, tables.summary_rows(rows))
+    yield tables.markdown(row_tables.SUMMARY_HEADER, row_tables.summary_rows(rows))
     yield "## Scenes: plain, with the enforcement of joints, with what is declared (2e-5 of a, 1e-6 of b: marked)"
     expected: dict[str, Any] = {"gap": 1.7e-3, "slip": NAN, "reaction": NAN}
     rows = [*falling("a x", POWER, **expected), *falling("b y", (1e-2, 3e-5, 3e-5, 3e-5), **expected)]
@@ -219,7 +219,7 @@ def test_the_order_of_rows_changes_no_cell():
 
 def test_two_rows_for_one_cell_are_refused():
     with pytest.raises(ValueError, match=r"two rows of 'a x' at a step of 10 ms"):
-        tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
+        row_tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
 
 
 COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (

@@ -16,8 +16,8 @@ from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
 from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
-from reports.run.running import worker_count
 from reports.run.supervisor import supervise
+from reports.run.worker import worker_count
 from tests.wrong.mistakes import NUMBER_KINDS, Mistake, MistakeTrial, Sighting, mistakes, noticed
 
 # Relative mistakes that have to be noticed: 1e-4 by methods that reach rounding, 1e-2 with documented settings.

@@ -28,7 +28,7 @@ from reports.pages.common import scene_page
 from reports.pages.skate.experiments import SKATE_CONSTRUCTIONS, SKATE_EXPERIMENTS, known
 from reports.plots.plane_panels import Blades, Panel, PanelNote, Path, paths
 from reports.plots.theme import svg
-from reports.write import tables
+from reports.write import row_tables, tables
 from reports.write.columns import enforcement_by_method
 from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
@@ -164,7 +164,7 @@ def constructions(rows: Sequence[Measurement], enforcement: Mapping[str, str] | 
             if not Outcome(row.outcome).comparable:
                 numbers[0] = f"**{row.outcome}** {numbers[0]}"
             wrong = all(Outcome(member.outcome).wrong for member in members)
-            convergence = "wrong at every step" if wrong else tables.sweep_words(verdicts[key])
+            convergence = "wrong at every step" if wrong else row_tables.sweep_words(verdicts[key])
             error = row.position if np.isfinite(row.position) else np.inf
             lines.append((error, [row.method, *numbers, tables.milliseconds(row.cpu), convergence]))
     header = [*CONSTRUCTION_HEADER, "order as the step shrinks, plateau in m"]

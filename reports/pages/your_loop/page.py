@@ -19,7 +19,8 @@ from reports.pages.your_loop.experiments import COMMIT, COUNT, MILLISECONDS_PER_
 from reports.pages.your_loop.linkages import LINKAGES
 from reports.versions.table import released
 from reports.write.page_tables import program
-from reports.write.tables import DASH, error_words, markdown, milliseconds, number
+from reports.write.row_tables import error_words
+from reports.write.tables import DASH, markdown, milliseconds, number
 from reports.write.unmeasured import UNMEASURED
 
 LINE_FILES = Path(__file__).parent / "lines"
