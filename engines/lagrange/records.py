@@ -65,8 +65,8 @@ BODY_RECORD = _record("", "inverse_mass inverse_inertia x y angle cos sin vx vy 
 JOINT_RECORD = _record("kind first second row roll", POINT_FIELDS + "angle length ratio offset rate")
 FORCE_RECORD = _record("kind first second first_term term_count", POINT_FIELDS + "x y stiffness rest damping load")
 TERM_RECORD = _record("row first second first_end second_end sliding", "factor line_angle offset " + POINT_FIELDS)
-# `column` is the first column of the row's envelope; the entry in a column is matrix[begin + column].
-ROW_RECORD = _record("first second holonomic column begin")
+# The factor's entries of a row begin at `begin`: the diagonal, and the couplings with `count` - 1 later rows.
+ROW_RECORD = _record("first second holonomic begin count")
 # State and regularisation of a row, which has no bias if `without_bias` is 1.
 EQUATION_RECORD = _record("", "gap bias rate stiffness damping compliance without_bias inverse_inertia")
 # Derivatives of a row by the coordinates of a body.
@@ -112,6 +112,7 @@ class System(NamedTuple):
     further_ends: Records
     products: Records
     matrix: Reals  # J M^-1 J^T in its envelope, overwritten by its factor.
+    columns: NDArray[np.uintp]  # The later row of each entry of the matrix.
     inverse_pivots: Reals  # (rows,).
     right: Reals  # (rows,) right side.
     reaction: Reals  # (rows,).

@@ -1,11 +1,13 @@
 """The records of a mechanism for compiled code.
 
-The rows are in reverse Cuthill-McKee order, so the envelope of the matrix J M^-1 J^T is narrow, with O(bodies) entries
-for a chain. Each entry is a sum of products of two ends of rows on one body. This module lists the products of ends.
+The rows are in reverse Cuthill-McKee order, and the matrix J M^-1 J^T is stored by paths in its elimination tree, with
+O(bodies) entries for a tree of joints. Each entry is a sum of products of two ends of rows on one body. This module
+lists the products of ends.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -83,7 +85,7 @@ def system_of(mechanism: Mechanism) -> tuple[System, Integers]:
     )
     rows = _rows(joints, numbers, positions)
     terms, further_ends = _terms(mechanism, numbers, first_rows)
-    products, entry_count = _envelope(rows, further_ends, body_count)
+    products, columns = _envelope(rows, further_ends, body_count)
     equations = np.zeros(len(rows), EQUATION_RECORD)
     equations["rate"][positions] = mechanism.rate
     gravity_x, gravity_y = mechanism.gravity
@@ -107,7 +109,8 @@ def system_of(mechanism: Mechanism) -> tuple[System, Integers]:
         ends=np.zeros(2 * len(rows) + len(further_ends) + 1, END_RECORD),
         further_ends=further_ends,
         products=products,
-        matrix=np.zeros(entry_count),
+        matrix=np.zeros(len(columns)),
+        columns=columns,
         inverse_pivots=np.zeros(len(rows)),
         right=np.zeros(len(rows)),
         reaction=np.zeros(len(rows)),
@@ -229,8 +232,12 @@ def _term(term: Term, numbers: Numbers) -> dict[str, Any]:
     return _between(term, numbers) | values
 
 
-def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Records, int]:
-    """Set the envelope; return the products of two ends on one body, and the number of the envelope's entries."""
+def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Records, NDArray[np.uintp]]:
+    """Set the envelope; return the products of two ends on one body, and the later row of each entry.
+
+    The parent of a row in the elimination tree is the first later row that its elimination changes. The entries of a
+    row are the path in the tree from the row to the last row that its elimination changes (Liu 1990).
+    """
     on_body: list[list[tuple[int, int]]] = [[] for _ in range(body_count + 1)]  # (row, end)
     for row, (first, second) in enumerate(zip(rows["first"].tolist(), rows["second"].tolist(), strict=True)):
         on_body[first].append((row, 2 * row))
@@ -238,20 +245,48 @@ def _envelope(rows: Records, further_ends: Records, body_count: int) -> tuple[Re
     for row, body, end in further_ends.tolist():
         on_body[body].append((row, end))
     moving = [sorted(ends) for ends in on_body[:-1]]
-    column = np.arange(len(rows))
-    for ends in moving:
-        for row, _ in ends:
-            column[row] = min(column[row], ends[0][0])
-    widths = np.arange(len(rows)) - column + 1
-    begin = np.cumsum(widths) - widths - column
-    rows["column"], rows["begin"] = column, begin
+    paths = elimination_paths(len(rows), [[row for row, _ in ends] for ends in moving])
+    rows["count"] = [len(path) for path in paths]
+    rows["begin"] = np.cumsum(rows["count"]) - rows["count"]
+    entries = [
+        dict(zip(path, range(begin, begin + len(path)), strict=True))
+        for begin, path in zip(rows["begin"].tolist(), paths, strict=True)
+    ]
     products = [
-        (begin[row] + other_row, end, other, body)
+        (entries[earlier][row], end, other, body)
         for body, ends in enumerate(moving)
         for k, (row, end) in enumerate(ends)
-        for other_row, other in ends[: k + 1]
+        for earlier, other in ends[: k + 1]
     ]
-    return np.array(products, dtype=PRODUCT_RECORD), int(widths.sum())
+    columns = np.fromiter(itertools.chain.from_iterable(paths), np.uintp)
+    return np.array(products, dtype=PRODUCT_RECORD), columns
+
+
+def elimination_paths(row_count: int, coupled: Iterable[Sequence[int]]) -> list[list[int]]:
+    """The path of each row. Each element of `coupled` has the ascending numbers of rows coupled with each other."""
+    earlier: list[set[int]] = [set() for _ in range(row_count)]
+    last = list(range(row_count))
+    for group in coupled:
+        for before, row in itertools.pairwise(group):
+            earlier[row].add(before)  # the tree leads from the other rows of the group to `before`
+        for row in group:
+            last[row] = max(last[row], group[-1])
+    parent, highest = list(range(row_count)), list(range(row_count))  # highest: a shortcut to the root of a subtree
+    for row in range(row_count):
+        for below in earlier[row]:
+            while highest[below] not in (below, row):
+                highest[below], below = row, highest[below]
+            if highest[below] == below != row:
+                parent[below] = highest[below] = row
+    for row, above in enumerate(parent):
+        last[above] = max(last[above], last[row])
+    paths = []
+    for row in range(row_count):
+        path = [row]
+        while path[-1] != last[row]:
+            path.append(parent[path[-1]])
+        paths.append(path)
+    return paths
 
 
 def _has_dependent_rows(mechanism: Mechanism) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import subprocess
 import sys
 from dataclasses import replace
@@ -16,6 +17,7 @@ from engines.lagrange.dynamics import RK4, Dynamics
 from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
 from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, TorsionDamper
+from reference.joints import Body, Pin, Rod
 from reference.mechanism import Mechanism
 from reference.scenes.catalogue import scene
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -90,6 +92,22 @@ def test_the_matrix_of_a_long_chain_has_a_narrow_envelope(links):
     truth = scene.motion(run.t)
     # The chain has hardly moved after 2e-4 s, so the rates of the links are compared.
     assert np.max(np.abs(run.twist - truth.twist)) < 1e-9 * links
+
+
+def test_the_matrix_of_a_tree_with_a_loop_has_few_entries_and_its_motion_equals_numpy():
+    starts, angles = [0j], [0.4 * k % 1.3 for k in range(41)]
+    for k in range(1, 41):  # two bars hang at the end of each earlier bar
+        starts.append(starts[(k - 1) // 2] + cmath.rect(1.0, angles[(k - 1) // 2]))
+    centres = [start + cmath.rect(0.5, angle) for start, angle in zip(starts, angles, strict=True)]
+    bars = tuple(Body(f"bar {k}", 1.0, 0.1, (z.real, z.imag, angles[k])) for k, z in enumerate(centres))
+    pins = [Pin("pin 0", None, "bar 0", (0.0, 0.0), (-0.5, 0.0))]
+    pins += [Pin(f"pin {k}", f"bar {(k - 1) // 2}", f"bar {k}", (0.5, 0.0), (-0.5, 0.0)) for k in range(1, 41)]
+    loop = Rod("loop", "bar 13", "bar 40", (0.0, 0.0), (0.0, 0.0), abs(centres[40] - centres[13]))
+    for joints, most in (((*pins,), 4.5), ((*pins, loop), 7.0)):
+        mechanism = Mechanism(bars, joints, (3.0, -9.81))
+        system, _ = system_of(mechanism)
+        assert len(system.matrix) < most * len(system.rows)
+        assert max(differences(mechanism, Lagrange("rk4"), 1e-3)) < 1e-12
 
 
 def test_a_projection_with_an_older_factor_removes_the_slip():

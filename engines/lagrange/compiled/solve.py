@@ -1,4 +1,4 @@
-"""Solve the row system J M^-1 J^T reaction = right (Schur complement of the KKT system), O(bodies) for a chain.
+"""Solve the row system J M^-1 J^T reaction = right (Schur complement of the KKT system), O(bodies) for a tree.
 
 The factor L D L^T needs no scaling, since scaled rows give the same digits. If the ratio of a pivot to its diagonal
 entry is below the limit, the row depends on earlier rows. Its reaction is set to zero, which does not change the
@@ -56,42 +56,45 @@ def assemble(system):
 
 @inlined
 def factorise(system):
-    """Replace the matrix by its factor; return the smallest pivot of independent rows relative to the diagonal."""
-    matrix, inverse_pivots, rows = system.matrix, system.inverse_pivots, system.rows
+    """Replace the matrix by its factor; return the smallest pivot of independent rows relative to the diagonal.
+
+    The elimination of a row changes the entries of the later rows on its path.
+    """
+    matrix, columns, inverse_pivots, rows = system.matrix, system.columns, system.inverse_pivots, system.rows
     limit = DEPENDENT_PIVOT if system.constants.dependent != 0 else INDEPENDENT_PIVOT
     smallest = 1.0
+    if system.status.selection != RowSelection.ALL:
+        leave_out(system)
     for row in range(len(rows)):
-        first, begin = rows[unsigned(row)].column, rows[unsigned(row)].begin
-        if system.status.selection != RowSelection.ALL:
-            leave_out(system, row, first, begin)
-        rest = diagonal = matrix[unsigned(begin + row)]
-        for column in range(first, row):
-            other = rows[unsigned(column)].begin
-            value = matrix[unsigned(begin + column)]
-            for k in range(max(first, rows[unsigned(column)].column), column):
-                value -= matrix[unsigned(begin + k)] * matrix[unsigned(other + k)]
-            matrix[unsigned(begin + column)] = value
-        for column in range(first, row):
-            value = matrix[unsigned(begin + column)]
-            matrix[unsigned(begin + column)] = value * inverse_pivots[unsigned(column)]
-            rest -= value * matrix[unsigned(begin + column)]
+        inverse_pivots[unsigned(row)] = matrix[unsigned(rows[unsigned(row)].begin)]
+    for row in range(len(rows)):
+        begin, count = rows[unsigned(row)].begin, rows[unsigned(row)].count
+        rest, diagonal = matrix[unsigned(begin)], inverse_pivots[unsigned(row)]
         if rest > limit * diagonal:
             smallest = min(smallest, rest / diagonal)
-            inverse_pivots[unsigned(row)] = 1.0 / rest
+            inverse_pivot = 1.0 / rest
         else:
-            inverse_pivots[unsigned(row)] = 0.0 if rest <= limit * diagonal else math.nan
+            inverse_pivot = 0.0 if rest <= limit * diagonal else math.nan
+        inverse_pivots[unsigned(row)] = inverse_pivot
+        for entry in range(begin + 1, begin + count):
+            to = rows[columns[unsigned(entry)]].begin
+            value = matrix[unsigned(entry)] * inverse_pivot
+            for k in range(begin + count - entry):
+                matrix[unsigned(to + k)] -= value * matrix[unsigned(entry + k)]
+            matrix[unsigned(entry)] = value
     return smallest
 
 
 @merged
-def leave_out(system, row, first, begin):
-    """Remove the entries of a row that couple selected rows with rows that are left out."""
-    is_out = is_left_out(system, row)
-    for column in range(first, row):
-        if is_out or is_left_out(system, column):
-            system.matrix[begin + column] = 0.0
-    if is_out:
-        system.matrix[begin + row] = 1.0
+def leave_out(system):
+    """Remove the entries that couple selected rows with rows that are left out."""
+    for row in range(len(system.rows)):
+        is_out, begin = is_left_out(system, row), system.rows[row].begin
+        if is_out:
+            system.matrix[begin] = 1.0
+        for entry in range(begin + 1, begin + system.rows[row].count):
+            if is_out or is_left_out(system, system.columns[entry]):
+                system.matrix[entry] = 0.0
 
 
 @inlined
@@ -100,25 +103,30 @@ def substitute(system, vector):
 
     A variable passes the result of a row to the next row, since memory access would take twice as long.
     """
-    rows, matrix, inverse_pivots = system.rows, system.matrix, system.inverse_pivots
-    neighbour = 0.0
-    for row in range(len(rows)):
-        first, begin, value = rows[unsigned(row)].column, rows[unsigned(row)].begin, vector[unsigned(row)]
-        for column in range(first, row - 1):
-            value -= matrix[unsigned(begin + column)] * vector[unsigned(column)]
-        if first < row:
-            value -= matrix[unsigned(begin + row - 1)] * neighbour
-        vector[unsigned(row)] = neighbour = value
+    rows, matrix, columns, inverse_pivots = system.rows, system.matrix, system.columns, system.inverse_pivots
+    last, value = len(rows) - 1, vector[unsigned(0)]
+    for row in range(last):
+        begin, end = rows[unsigned(row)].begin + 1, rows[unsigned(row)].begin + rows[unsigned(row)].count
+        neighbour = vector[unsigned(row + 1)]
+        vector[unsigned(row)] = value
+        if begin < end and columns[unsigned(begin)] == unsigned(row + 1):
+            neighbour -= matrix[unsigned(begin)] * value
+            begin += 1
+        for entry in range(begin, end):
+            vector[columns[unsigned(entry)]] -= matrix[unsigned(entry)] * value
+        value = neighbour
+    vector[unsigned(last)] = value
     for row in range(len(rows)):
         vector[unsigned(row)] *= inverse_pivots[unsigned(row)]
-    value = vector[unsigned(len(rows) - 1)]
-    for row in range(len(rows) - 1, 0, -1):
-        first, begin, neighbour = rows[unsigned(row)].column, rows[unsigned(row)].begin, vector[unsigned(row - 1)]
-        if first < row:
-            neighbour -= matrix[unsigned(begin + row - 1)] * value
-        for column in range(first, row - 1):
-            vector[unsigned(column)] -= matrix[unsigned(begin + column)] * value
-        vector[unsigned(row - 1)] = value = neighbour
+    neighbour = vector[unsigned(last)]
+    for row in range(last - 1, -1, -1):
+        begin, value = rows[unsigned(row)].begin, vector[unsigned(row)]
+        for entry in range(begin + rows[unsigned(row)].count - 1, begin + 1, -1):
+            value -= matrix[unsigned(entry)] * vector[columns[unsigned(entry)]]
+        if rows[unsigned(row)].count > 1:
+            nearest = columns[unsigned(begin + 1)]
+            value -= matrix[unsigned(begin + 1)] * (neighbour if nearest == unsigned(row + 1) else vector[nearest])
+        vector[unsigned(row)] = neighbour = value
 
 
 @inlined
@@ -241,4 +249,4 @@ def assemble_compliant(system):
     assemble(system)
     for row in range(rows):
         equation = equations[row]
-        system.matrix[system.rows[row].begin + row] += equation.compliance * equation.inverse_inertia
+        system.matrix[system.rows[row].begin] += equation.compliance * equation.inverse_inertia
