@@ -25,7 +25,8 @@ from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
 from reports.site.lesson import Experiment, Guess, Lesson, LessonQuantity, SiteSource
-from reports.site.lessons import LESSONS, take_like
+from reports.site.lessons import LESSONS, PROBLEMS, take_like
+from reports.site.lessons.linkages import FOUR_BAR
 from reports.site.live.data import data, first_picture
 from reports.site.live.models import own_values
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED, Live
@@ -62,7 +63,7 @@ def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
     extra = _extra_files(source, lessons)
     documents = _documents(source, lessons)
 
-    context = {"lessons": [(lesson.name, lesson.title) for lesson in lessons], "foot": source.foot}
+    context = {"lessons": _grouped(lessons), "foot": source.foot}
 
     def add_pages(app: Any) -> Iterator[Extra]:
         for lesson in lessons:
@@ -79,6 +80,16 @@ def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
     pages = sorted(name for name in files if name.endswith(".html"))
     files[MARKER] = json.dumps({"pages": pages, "troubles": source.troubles}, indent=1).encode()
     return files
+
+
+def _grouped(lessons: tuple[Lesson, ...]) -> dict[str, list[tuple[str, str]]]:
+    """Return pairs (name, title) of the lessons by the type of problem."""
+    wanted = {lesson.name for lesson in lessons}
+    groups = {
+        problem: [(lesson.name, lesson.title) for lesson in group if lesson.name in wanted]
+        for problem, group in PROBLEMS.items()
+    }
+    return {problem: group for problem, group in groups.items() if group}
 
 
 def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
@@ -191,12 +202,15 @@ def _front_page(
     source: SiteSource, lessons: tuple[Lesson, ...], results: list[tuple[str, str]], trees: Mapping[str, list[str]]
 ) -> str:
     text = (HERE / "front.md").read_text(encoding="utf-8")
-    taught = cards([(f"lessons/{lesson.name}.html", lesson.title) for lesson in lessons])
+    taught = "\n\n".join(
+        f"### {problem}\n\n{cards([(f'lessons/{name}.html', heading) for name, heading in group])}"
+        for problem, group in _grouped(lessons).items()
+    )
     measured = cards([(f"results/{name}.html", heading) for name, heading in results])
     tree = "\n\n".join(
         f"```{{toctree}}\n:hidden:\n:caption: {name}\n\n" + "\n".join(pages) + "\n```" for name, pages in trees.items()
     )
-    values = {"first": lessons[0].name, "lessons": taught, "results": measured, "missing": _without(source, MUJOCO)}
+    values = {"lessons": taught, "results": measured, "missing": _without(source, MUJOCO)}
     return f"{jinja2.Template(text).render(values)}\n\n{tree}\n"
 
 
@@ -292,7 +306,7 @@ def _with_drags(text: str, values: Mapping[str, str], words: Mapping[str, str]) 
 
 
 def _front_picture(source: SiteSource) -> str:
-    live = LESSONS[0].scene("let go")
+    live = FOUR_BAR.scene("let go")
     stored = live.stored()
     cells = {label: stored[name, 0].cell for name, label in NAMES.items()}
     methods = tuple((f"{label} {SHIPPED}", cell.engine, cell.every) for label, cell in cells.items())

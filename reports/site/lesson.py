@@ -18,7 +18,7 @@ BOTH: dict[str, Any] = dict.fromkeys(ENGINES, DOCUMENTED)
 FORCES, CENTRE = ("reactions",), ("centre",)  # overlays
 
 
-Kind = Literal["gap", "rates", "bend", "centre", "contact"]
+Kind = Literal["gap", "rates", "bend", "centre", "contact", "energy", "friction"]
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,8 @@ class LessonQuantity:
     gap: the largest gap of a pin or slot [m]. rates: the least and the largest turning rate of a body [rad/s]. bend:
     the first time [s] at which the angle between two bodies is 1 rad. centre: the median distance of an engine's
     instant centre from the exact one [m]. contact: the largest change of the sum of the distances from the contact to
-    the two pins of a pair of gears [m].
+    the two pins of a pair of gears [m]. energy: the energy at the end minus that at the start [J]. friction: the
+    largest friction coefficient that the exact motion requires [1].
     """
 
     kind: Kind

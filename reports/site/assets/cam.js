@@ -60,7 +60,7 @@ export function crosses(points) {
   return false;
 }
 
-const line = (/** @type {Point[]} */ points) => `M${points.map(([x, y]) => `${x.toFixed(5)} ${y.toFixed(5)}`).join("L")}Z`;
+const line = (/** @type {Point[]} */ points) => `M${points.map(([x, y]) => `${x.toFixed(7)} ${y.toFixed(7)}`).join("L")}Z`;
 
 /** Return both shapes as an SVG, side by side at one scale, 1 m of the drawing as 100 mm. @param {Shapes} shapes */
 export function asSvg({ space, body }) {
@@ -76,7 +76,7 @@ export function asSvg({ space, body }) {
 export function asDxf({ space, body }) {
   const polyline = (/** @type {string} */ layer, /** @type {Point[]} */ points) => [
     ...[0, "POLYLINE", 8, layer, 66, 1, 70, 1],
-    ...points.slice(0, -1).flatMap(([x, y]) => [0, "VERTEX", 8, layer, 10, x.toFixed(6), 20, y.toFixed(6)]),
+    ...points.slice(0, -1).flatMap(([x, y]) => [0, "VERTEX", 8, layer, 10, x.toFixed(7), 20, y.toFixed(7)]),
     ...[0, "SEQEND"],
   ];
   const head = [0, "SECTION", 2, "HEADER", 9, "$ACADVER", 1, "AC1009", 9, "$INSUNITS", 70, 6, 0, "ENDSEC", 0, "SECTION", 2, "ENTITIES"];

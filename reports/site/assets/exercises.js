@@ -2,6 +2,7 @@
 /** Exercises: the page computes each answer from equations, and compares it with the reader's. */
 
 import { MOTIONS, extent, shapesOf } from "./cam.js";
+import { ERRATA } from "./errata.js";
 import { freedoms, motion, rates } from "./exact.js";
 import { instantCentre, placed } from "./motion.js";
 import { commutator, moved, sidestep } from "./parking.js";
@@ -203,22 +204,39 @@ export const ANSWERS = {
   coupler_speed: () => Math.hypot(...velocity(fourBar(90), rates(fourBar(90), [[-1, 0, 10]]), 1, [0, 0])),
   ladder_centre: () => Math.hypot(...centreOf(ladder(), rates({ ...ladder() }, [[-1, 0, 1]]), 0)),
   rocker_rate: () => rates(fourBar(0), [[-1, 0, 10]])[8],
+  ring_contact: () => ERRATA[4].of({ ...ERRATA[4].start, rate: 3, fixed: 0.5, rolling: 0.2 }).decides[0],
+  terms_apart: () => {
+    const { printed, decides } = ERRATA[11].of({ angle: 0, rate: 3, acceleration: 0, speed: 2, push: 0, ahead: 0, left: 0 });
+    return Math.hypot(printed[0] - decides[0], printed[1] - decides[1]);
+  },
+  bar_up: () => ERRATA[28].of({ angle: rad(60), rate: -1, acceleration: 3, length: 1 }).decides[1],
 };
 
-/** Show whether an answer is right. @param {HTMLFormElement} form */
-function check(form) {
-  const given = Number((form.querySelector("input")?.value ?? "").trim().replace(",", ".").replace("\u2212", "-"));
-  const answer = ANSWERS[form.dataset.answer ?? ""]();
-  const verdict = /** @type {HTMLElement} */ (form.querySelector(".verdict"));
-  const right = Math.abs(given - answer) <= CLOSE * Math.abs(answer);
-  verdict.textContent = Number.isNaN(given) ? "Give a number." : right ? `Right. The page computes ${Number(answer.toPrecision(5))}.` : Math.abs(given + answer) <= CLOSE * Math.abs(answer) ? "The size is right, the sign is not." : "Not so. The solution is below.";
+/** Usual mistakes: the factor by which an answer is wrong, and the sentence about it. @type {[number, string][]} */
+const MISTAKES = [
+  [-1, "The size is right, the sign is not."],
+  [2, "Not so: this is twice the answer."],
+  [1 / 2, "Not so: this is half of the answer."],
+  [180 / Math.PI, "Not so: this answer is in degrees."],
+  [Math.PI / 180, "Not so: this answer is in radians."],
+];
+
+/** Return the sentence about an answer. @param {string} name @param {string} text that the reader typed */
+export function verdict(name, text) {
+  const given = Number(text.trim().replace(",", ".").replace("\u2212", "-") || NaN);
+  const answer = ANSWERS[name]();
+  const is = (/** @type {number} */ value) => Math.abs(given - value) <= CLOSE * Math.abs(value);
+  if (Number.isNaN(given)) return "Give a number.";
+  if (is(answer)) return `Right. The page computes ${Number(answer.toPrecision(5))}.`;
+  return MISTAKES.find(([factor]) => is(factor * answer))?.[1] ?? "Not so. The solution is below.";
 }
 
 if (typeof document !== "undefined") {
   for (const form of document.querySelectorAll("form.exercise")) {
     form.addEventListener("submit", (event) => {
       event.preventDefault();
-      if (form instanceof HTMLFormElement) check(form);
+      const place = form.querySelector(".verdict");
+      if (form instanceof HTMLFormElement && place) place.textContent = verdict(form.dataset.answer ?? "", form.querySelector("input")?.value ?? "");
     });
   }
 }

@@ -8,7 +8,7 @@ import { FINE, ROUGH, motion, released } from "./exact.js";
  * @typedef {{numbers: string, idle: string[], impulses: number[]}} Space
  * @typedef {{why: string, idle: string[]}} Missing
  * @typedef {{box: string, ground: string, bodies: string[], size: number}} Drawing
- * @typedef {{equations: Omit<import("./exact.js").Mechanism, "joints">|null, truth: string|null, drawing: Drawing,
+ * @typedef {{inertia: number[], gravity: number[], equations: Omit<import("./exact.js").Mechanism, "joints"|"inertia"|"gravity">|null, truth: string|null, drawing: Drawing,
  *   forces: import("./motion.js").Force[]|null, joints: import("./motion.js").Joint[],
  *   blades: import("./motion.js").Blade[], traces: {body: number, point: number[]}[]}} Place
  * @typedef {"munk"|"mujoco"} Name
@@ -43,9 +43,10 @@ export function modelOf({ scene, place, stepPlace, ...run }, engine) {
 /** Return the equations of a pinned linkage, with the start at which the reader released it; null for other mechanisms.
  * @param {Run} run @returns {import("./exact.js").Mechanism|null} */
 export function mechanismOf(run) {
-  const { at: { equations, joints }, start } = run;
+  const { at: { equations, inertia, gravity, joints }, start } = run;
   if (!equations) return null;
-  return start ? released({ ...equations, joints }, start) : { ...equations, joints };
+  const mechanism = { ...equations, inertia, gravity, joints };
+  return start ? released(mechanism, start) : mechanism;
 }
 
 /** Return the exact motion at the samples. `computed`: whether the page has computed it, and not the reference. @param {Run} run

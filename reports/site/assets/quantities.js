@@ -3,10 +3,10 @@
 
 import { ends, instantCentre, poseAt, told, UNITS } from "./motion.js";
 
-/** @typedef {{kind: "gap"|"rates"|"bend"|"centre"|"contact", words: string, bodies: number[]}} Quantity
+/** @typedef {{kind: "gap"|"rates"|"bend"|"centre"|"contact"|"energy"|"friction", words: string, bodies: number[]}} Quantity
  * @typedef {{pose: ArrayLike<number>, twist: ArrayLike<number>}} States
  * @typedef {{t: ArrayLike<number>, bodies: number, window: number[], joints: import("./motion.js").Joint[],
- *   forces: import("./motion.js").Force[]|null, exact: States}} Run
+ *   forces: import("./motion.js").Force[]|null, exact: States, inertia: number[], gravity: number[]}} Run
  * @typedef {number[]|null} Found one number, or the least and the largest one */
 
 /** Return a quantity of one motion; null for a motion without it. @param {Quantity} quantity @param {Run} run @param {States} states @returns {Found} */
@@ -40,6 +40,17 @@ export function measured({ kind, bodies }, run, states) {
       }).sort((a, b) => a - b);
       return states === exact ? null : [apart[Math.floor(apart.length / 2)]];
     }
+    case "energy": {
+      const energy = (/** @type {number} */ frame) => run.inertia.reduce((sum, inertia, k) => {
+        const [place, rate] = [states.pose, states.twist].map((all) => all[run.inertia.length * frame + k]);
+        return sum + inertia * (rate * rate / 2 - (run.gravity[k % 3] ?? 0) * place);
+      }, 0);
+      return [energy(last) - energy(0)];
+    }
+    case "friction": {
+      const ratios = run.forces?.flatMap(({ friction }) => friction ?? []) ?? [];
+      return states === exact && ratios.length ? [ratios.reduce((most, ratio) => Math.max(/** @type {number} */ (most), ratio ?? Infinity), 0)] : null;
+    }
     case "contact": {
       const at = run.forces?.find(({ contact }) => contact)?.at;
       if (states !== exact || !at) return null;
@@ -50,7 +61,7 @@ export function measured({ kind, bodies }, run, states) {
   }
 }
 
-const QUANTITY_UNITS = { gap: "m", rates: "rad/s", bend: "s", centre: "m", contact: "m" };
+const QUANTITY_UNITS = { gap: "m", rates: "rad/s", bend: "s", centre: "m", contact: "m", energy: "J", friction: "" };
 
 /** Return a quantity as text. @param {Quantity["kind"]} kind @param {Found|undefined} found */
 export function worded(kind, found) {

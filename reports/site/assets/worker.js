@@ -63,6 +63,7 @@ async function answer(setting, engines, quantities) {
   const taken = {
     exact, joints: run.at.joints,
     forces: exact.computed ? exact.forces : run.at.forces,
+    inertia: run.at.inertia, gravity: run.at.gravity,
     window: window.map((frame) => Math.round(frame * stretch)),
     t: Float64Array.from({ length: run.samples + 1 }, (_, index) => index * run.every * run.step),
   };

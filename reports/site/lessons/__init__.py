@@ -4,11 +4,19 @@ from engines import Engine
 from reference.scene import Scene
 from reports.site.animated import Take
 from reports.site.lessons.chains import CHAINS
+from reports.site.lessons.errata import ERRATA
 from reports.site.lessons.linkages import CENTRODES, FOUR_BAR, PENDULUM, SLIDER_CRANK
 from reports.site.lessons.rolling import CAM, GEARS, ROLLING
 from reports.site.lessons.skates import PARKING, SKATE, WHEELS
 
-LESSONS = (FOUR_BAR, SLIDER_CRANK, PENDULUM, CHAINS, SKATE, PARKING, WHEELS, ROLLING, GEARS, CENTRODES, CAM)
+# The lessons by the chapter's types of problems, in the chapter's order.
+PROBLEMS = {
+    "I. Open and closed chains": (PENDULUM, CHAINS, SLIDER_CRANK, FOUR_BAR),
+    "II. Rolling": (ROLLING, GEARS, CENTRODES, CAM),
+    "III. Skates and wheels": (SKATE, PARKING, WHEELS),
+    "The text of the chapter": (ERRATA,),
+}
+LESSONS = tuple(lesson for lessons in PROBLEMS.values() for lesson in lessons)
 
 
 def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:

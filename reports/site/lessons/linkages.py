@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import cache
 
@@ -14,6 +15,7 @@ from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, 
 from reports.site.live.sliders import Live, Point, Slider
 
 JOINTS_OPEN = LessonQuantity("gap", "widest gap of a joint")
+ENERGY = LessonQuantity("energy", "the energy changes by")
 RATIOS = (0.01, 0.1, 1.0, 10.0, 100.0)
 DENSITIES = tuple(1.0 if ratio == 1 else (1.0, ratio, 1.0) for ratio in RATIOS)
 DENSITY = Slider("density", "the coupler's density to that of the others", DENSITIES, tuple(map("{:g}".format, RATIOS)))
@@ -48,13 +50,15 @@ FREE = Live(
     traces=(("coupler", (0.0, 0.0)),),
 )
 
-MIRRORED = replace(DRIVEN, word="other assembly", scene=DrivenFourBar(branch=-1), sliders=())
+ASSEMBLIES = replace(
+    DRIVEN, word="two assemblies", sliders=(Slider("branch", "place of C", (1, -1), ("above", "below")),)
+)
 
 FOUR_BAR = Lesson(
     "four_bar",
     "The four-bar linkage",
     "four_bar",
-    (DRIVEN, FREE, MIRRORED),
+    (DRIVEN, FREE, ASSEMBLIES),
     (
         Experiment("driven", section="Nine configurations"),
         Experiment(
@@ -110,7 +114,15 @@ FOUR_BAR = Lesson(
                 Guess(),
             ),
         ),
-        Experiment("other assembly", overlays=CENTRE),
+        Experiment(
+            "two assemblies",
+            after={"branch": -1},
+            claims=(Claim("exact", 0.999, 1.001, "rates"),),
+            overlays=CENTRE,
+            widget="errata",
+            guesses=(Guess(), Guess(), Guess()),
+            quantities=(LessonQuantity("rates", "the rocker turns at", ("rocker",)),),
+        ),
     ),
 )
 
@@ -156,20 +168,26 @@ SLIDER_CRANK = Lesson(
                 Claim("munk", most=0.1),
                 Claim("mujoco", most=0.1),
                 Claim("munk", 1e-4, 5e-3, "gap", is_value=True),
+                Claim("munk", -0.1, 0.1, "energy"),
             ),
             guesses=(
                 Guess({}, {"munk": 0.01}),
                 Guess({}, claims=(Claim("munk", 1.0, is_value=True), Claim("munk", 0, 0.01, "gap", is_value=True))),
                 Guess({"iterations": 100}, claims=(Claim("munk", 0.9, 1.1),)),
             ),
-            quantities=(JOINTS_OPEN,),
+            quantities=(JOINTS_OPEN, ENERGY),
         ),
         Experiment(
             "driven",
             {"slider_mass": 50.0, **BOTH},
             {"iterations": 10},
             (Claim("munk", least=10),),
-            (({"iterations": 100}, Claim("munk", most=0.1)), ({"slider_mass": 0.5}, Claim("munk", most=0.1))),
+            (
+                ({"iterations": 100}, Claim("munk", most=0.1)),
+                ({"slider_mass": 0.5}, Claim("munk", most=0.1)),
+                ({"iterations": None}, Claim("munk", most=1e-3, is_value=True)),
+                ({"iterations": None}, Claim("mujoco", most=1e-3, is_value=True)),
+            ),
             FORCES,
             section="Where methods fail",
             guesses=(Guess(times={"munk": 1.0}), Guess(times={"munk": 10.0}), Guess(times={"munk": 7000.0})),
@@ -226,14 +244,15 @@ PENDULUM = Lesson(
         Experiment(
             "one link",
             after={"bias": 0.0},
-            claims=(Claim("munk", most=0.1),),
-            causes=(({"bias": None, "iterations": 100}, Claim("munk", least=10)),),
+            claims=(Claim("munk", most=0.1), Claim("munk", 0.05, 0.15, "energy")),
+            causes=(({"bias": None, "iterations": 100}, Claim("munk", -math.inf, -1.0, "energy", is_value=True)),),
             section="In motion",
             guesses=(
                 Guess({"iterations": 100}, claims=(Claim("munk", 0.9, 1.1),)),
                 Guess(),
                 Guess(times={"munk": 1.0}),
             ),
+            quantities=(ENERGY,),
         ),
         Experiment(
             "two links",
@@ -266,8 +285,12 @@ PENDULUM = Lesson(
             "two links",
             {"tip": 100.0},
             {"iterations": 2},
-            (Claim("munk", least=10), Claim("mujoco", 1.0, 1.0)),
-            (({"iterations": 20}, Claim("munk", most=0.1)), ({"tip": 1.0}, Claim("munk", most=1.0))),
+            (Claim("munk", least=10), Claim("munk", least=10, of="gap"), Claim("mujoco", 1.0, 1.0)),
+            (
+                ({"iterations": 20}, Claim("munk", most=0.1)),
+                ({"tip": 1.0}, Claim("munk", most=0.1, of="gap")),
+                ({"steps": 5000}, Claim("munk", most=0.1)),
+            ),
             FORCES,
             section="Where methods fail",
             guesses=(
@@ -275,6 +298,7 @@ PENDULUM = Lesson(
                 Guess(),
                 Guess({"iterations": 2, "bias": 0.0}, claims=(Claim("munk", least=10),)),
             ),
+            quantities=(JOINTS_OPEN,),
         ),
     ),
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from engines import pymunk
@@ -10,7 +11,7 @@ from engines.pymunk.methods import ROLL_FACETED
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingCam, RollingDisc, RollingEllipse
 from reports.site.lesson import BOTH, CENTRE, FORCES, Claim, Experiment, Guess, Lesson, LessonQuantity
-from reports.site.lessons.linkages import CENTRODES
+from reports.site.lessons.linkages import CENTRODES, ENERGY
 from reports.site.live.sliders import DOCUMENTED, SHIPPED, Live, Slider
 
 ROLLER = (("roller", (0.0, 0.0)),)
@@ -54,14 +55,28 @@ ROLLING = Lesson(
     ),
     (
         Experiment("a cam", overlays=CENTRE, section="The contact"),
-        Experiment("an ellipse", overlays=("friction",), section="Friction demanded, friction given"),
+        Experiment(
+            "an ellipse",
+            after={"along_y": 0.2},
+            claims=(Claim("exact", 1.7, 2.0, "friction"), Claim("exact", 0.5, 0.6, "friction", is_value=True)),
+            causes=(({"along_y": 0.3, "start_rate": 5.0}, Claim("exact", 0.2, 0.27, "friction", is_value=True)),),
+            overlays=("friction",),
+            section="Friction demanded, friction given",
+            guesses=tuple(Guess(times={"exact": times}, of="friction") for times in (0.5, 1.0, 1.8)),
+            quantities=(LessonQuantity("friction", "rolling requires a coefficient of"),),
+        ),
         Experiment(
             "an ellipse",
             after={"steps": 2000},
-            claims=(Claim("munk", 0.7, 1.3), Claim("mujoco", 0.7, 2.0)),
-            causes=(({"munk": MANY}, Claim("munk", most=0.25)),),
+            claims=(
+                Claim("munk", 0.7, 1.3),
+                Claim("mujoco", 0.7, 2.0),
+                Claim("munk", -math.inf, -0.1, "energy", is_value=True),
+            ),
+            causes=(({"munk": MANY}, Claim("munk", most=0.25)), ({"munk": MANY}, Claim("munk", 0, 0.25, "energy"))),
             section="Errors that no smaller step removes",
             guesses=tuple(Guess(times={"munk": times, "mujoco": times}) for times in (0.1, 1.0, 1e-3)),
+            quantities=(ENERGY,),
         ),
         Experiment(
             "a disc",
@@ -74,9 +89,10 @@ ROLLING = Lesson(
             "an ellipse",
             {"munk": MANY, "steps": 2000},
             {"munk": FEW},
-            (Claim("munk", least=10),),
+            (Claim("munk", least=10), Claim("munk", least=10, of="energy")),
             section="Where methods fail",
             guesses=tuple(Guess(times={"munk": times}) for times in (1.0, 2.0, 11.0)),
+            quantities=(ENERGY,),
         ),
     ),
 )
@@ -117,7 +133,8 @@ GEARS = Lesson(
         Experiment(
             "two gears",
             after=BOTH,
-            claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.5)),
+            claims=(Claim("munk", most=0.1), Claim("mujoco", most=0.1)),
+            causes=(({"steps": 400}, Claim("munk", least=100)),),
             overlays=FORCES,
             guesses=(
                 Guess(),
@@ -151,9 +168,10 @@ CAM = Lesson(
             "a cam",
             {"munk": MANY, "steps": 2000},
             {"munk": FEW},
-            (Claim("munk", least=10),),
+            (Claim("munk", least=10), Claim("munk", least=10, of="energy")),
             overlays=CENTRE,
             guesses=(Guess(times={"munk": 1.0}), Guess(times={"munk": 2.0}), Guess()),
+            quantities=(ENERGY,),
         ),
     ),
 )

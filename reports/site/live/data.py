@@ -68,6 +68,8 @@ def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
     blades = [joint for joint in mechanism.joints if isinstance(joint, Skate)]
     traces = live.traces or [(str(blade.second), blade.second_point) for blade in blades]
     return {
+        "inertia": [value for body in mechanism.bodies for value in (body.mass, body.mass, body.inertia)],
+        "gravity": list(mechanism.gravity),
         "equations": _equations(mechanism) if pinned else None,
         "truth": packed(np.concatenate([truth.pose, truth.twist], axis=-1)) if has_motion else None,
         "forces": forces(mechanism, truth) if has_motion else None,
@@ -87,11 +89,9 @@ def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _equations(mechanism: Mechanism) -> dict[str, Any]:
-    """Return the input of the page's exact solver, without the joints."""
+    """Return the input of the page's exact solver, without inertia, gravity and joints."""
     drives = [joint for joint in mechanism.joints if isinstance(joint, Drive)]
     return {
-        "inertia": [value for body in mechanism.bodies for value in (body.mass, body.mass, body.inertia)],
-        "gravity": list(mechanism.gravity),
         "pose": mechanism.pose.ravel().tolist(),
         "twist": mechanism.twist.ravel().tolist(),
         "drives": [
