@@ -230,7 +230,7 @@ def test_the_reference_contains_docstrings():
     modules = ("mechanism", "numerics.integration", "chapter.skates")
     names = ("reference/index.rst", *(f"reference/reference.{module}.rst" for module in modules))
     sources = {name: text for name, text in reference_sources().items() if name in names} | {"index.md": b"# Site\n"}
-    pages, _ = build_html(Documents(sources, {}, {"lessons": ()}, lambda app: iter(())))
+    pages, _ = build_html(Documents(sources, {}, {"lessons": {}}, lambda app: iter(())))
     assert "Bodies, the joints between them" in pages["reference/reference.mechanism.html"].decode()
     for module in modules:  # "|y|" and "x_" are no references
         page = LinksOfPage(pages[f"reference/reference.{module}.html"].decode())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 from dataclasses import replace
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 from engines import Unsupported, mujoco, pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.stiffness import STIFFEST, TiedToStep
+from reference.chapter.centrodes import instant_centre
 from reference.mechanism import Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.site.folder import compressed_size
@@ -360,6 +362,19 @@ def test_the_keyboard_parks_the_skate_in_five_moves(opened, lesson):
     assert "moves it by -0.042 m ahead and 0.190 m to the left in 4 moves" in text  # 0.45 m and 25 degrees
 
 
+# The points of both paths in the coordinates of the drawing, and its scale [m of the paper for each m].
+SVG_POINTS = """() => {
+  const root = document.documentElement;
+  const points = (path) => path.getAttribute('d').slice(1, -1).split('L').slice(0, 360).map((pair) => {
+    const [x, y] = pair.split(' ').map(Number);
+    const { x: u, y: v } = new DOMPoint(x, y).matrixTransform(path.transform.baseVal.consolidate().matrix);
+    return [u, v];
+  });
+  return [Object.fromEntries([...document.querySelectorAll('path')].map((path) => [path.id, points(path)])),
+    root.width.baseVal.valueInSpecifiedUnits / 1000 / root.viewBox.baseVal.width];
+}"""
+
+
 @pytest.mark.parametrize("lesson", [marked("cam")])
 def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
     page = opened(f"lessons/{lesson}.html", viewport=TALL)
@@ -371,11 +386,31 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
             page.mouse.down()
     page.mouse.up()
     assert "The moving shape rolls on the fixed one" in page.inner_text(".cam .count")
-    for kind, end in (("svg", "</svg>"), ("dxf", "EOF")):
+    page.locator("[data-motion=Ellipse]").click()
+    for kind in ("svg", "dxf"):
         with page.expect_download() as download:
             page.locator(f"[data-file={kind}]").click()
-        download.value.save_as(tmp_path / kind)
-        assert (tmp_path / kind).read_text().rstrip().endswith(end)
+        download.value.save_as(tmp_path / f"shapes.{kind}")
+    t = np.linspace(0, 2 * np.pi, 361)
+    pose = np.column_stack([0.5 * np.cos(t), 0.2 * np.sin(t), t])
+    twist = np.column_stack([-0.5 * np.sin(t), 0.2 * np.cos(t), np.ones(361)])
+    curves = dict(zip(("space", "body"), instant_centre(pose, twist), strict=True))
+    ezdxf = pytest.importorskip("ezdxf", reason="ezdxf is not installed: pip install '.[dxf]'")
+    lines = ezdxf.readfile(tmp_path / "shapes.dxf").modelspace()
+    found = {line.dxf.layer.lower(): [(point.x, point.y) for point in line.points()] for line in lines}
+    # The browser itself reads the SVG. Its transform keeps the shape and the scale: 1 m is 1000/10 mm = 100 mm.
+    page.goto(f"data:image/svg+xml;base64,{base64.b64encode((tmp_path / 'shapes.svg').read_bytes()).decode()}")
+    svg, viewed = page.evaluate(SVG_POINTS)
+    assert viewed == pytest.approx(0.1)
+    for name, curve in curves.items():
+        assert np.abs(np.array(found[name]) - curve[:-1]).max() < 1e-6
+        points = np.array(svg[name])
+        assert np.abs((points - points[0]) * (1, -1) - (curve - curve[0])[:-1]).max() < 1e-6
+
+
+@pytest.mark.parametrize("lesson", [marked("cam")])
+def test_a_motion_about_one_point_gives_no_shapes(opened, lesson):
+    page = opened(f"lessons/{lesson}.html", viewport=TALL)
     page.locator("[data-motion=Circle]").click()
     assert "only turns about one fixed point" in page.inner_text(".cam .count")
     assert page.locator("[data-file=dxf]").is_disabled()

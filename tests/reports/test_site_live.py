@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-import re
 from dataclasses import replace
 from typing import Any
 
@@ -24,6 +23,7 @@ from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
+from reports.site.build import DRAGGED
 from reports.site.drawn import place_of, required_friction
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
@@ -31,6 +31,7 @@ from reports.site.live.data import data as live_data
 from reports.site.live.data import forces
 from reports.site.live.models import RecordKind, mujoco_text, space_of
 from reports.site.live.sliders import Live
+from reports.site.markdown import render_html
 
 LIVE = {f"{lesson.name}: {live.word}": live for lesson in LESSONS for live in lesson.scenes}
 
@@ -62,7 +63,7 @@ def test_experiments_and_their_texts_use_existing_controls(lesson):
             assert not guess.change or guess.claims, words
         # Every experiment that changes settings of an engine has a claim on the error.
         assert experiment.claims or not set(experiment.after) - {slider.field for slider in live.sliders}, part.heading
-        numbers = re.findall(r"{(\w+)}", part.text + part.after)
+        numbers = DRAGGED.findall(render_html(part.text + part.after))  # formulas have braces, too
         assert set(numbers) <= set(live.controls()), part.heading
 
 
