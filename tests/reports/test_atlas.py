@@ -26,7 +26,7 @@ from reports.pages.atlas.columns import FILE, NOT_RUN, MapColumn, StoredColumn
 from reports.pages.atlas.page import atlas_map, edges
 from reports.pages.atlas.subjects import MAPS, StabilityMap
 from reports.pages.rendering import render_page
-from reports.plots.looks import SHADES, outcome_colour, shade
+from reports.plots.looks import outcome_colour
 from reports.plots.theme import LIGHT
 from reports.run.running import run_items
 from tests.reports.test_command_line import call, one_line
@@ -154,15 +154,6 @@ LINES = (
 )
 
 
-def test_the_file_is_read_as_it_was_written(tmp_path):
-    (tmp_path / FILE).write_text(map_columns.as_csv(LINES), encoding="utf-8")
-    assert sorted(map(str, map_columns.read(tmp_path / FILE))) == sorted(map(str, LINES))
-    assert map_columns.read(tmp_path / "none.csv") == ()
-    (tmp_path / "wrong.csv").write_text("a,b\n1,2\n")
-    with pytest.raises(ValueError, match=r"wrong\.csv: not a file of the atlas"):
-        map_columns.read(tmp_path / "wrong.csv")
-
-
 def test_each_cell_is_painted_in_the_colour_of_its_region():
     figure = atlas_map(TOYS, LINES[:2])
     [panel] = [axes for axes in figure.axes if axes.get_visible()]
@@ -222,9 +213,3 @@ def test_the_command_writes_its_file_and_continues_an_earlier_run(monkeypatch, t
     for unknown in ("lenght", ","):
         assert call("atlas", "--scenes", unknown) == REFUSED
         assert "length" in one_line(capsys.readouterr().err)
-
-
-def test_an_error_has_the_shade_of_its_bound():
-    for bound, role in SHADES[:-1]:
-        assert [shade(0.99 * bound), shade(bound) == role] == [role, False]
-    assert shade(math.inf) == shade(math.nan) == "middling"

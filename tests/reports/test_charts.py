@@ -15,11 +15,9 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from reference import trajectory as outlines
 from reference.chapter.centrodes import Centrodes
-from reference.joints import Pin, Slot
+from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
-from reference.scenes.slider_crank import DrivenSliderCrank
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.pages.centrodes.page import draw_centrodes, draw_rate
@@ -28,9 +26,8 @@ from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
 from reports.plots.plane_panels import Blades, Panel, PanelNote, Path, paths
 from reports.plots.theme import LIGHT
-from tests.mechanisms import four_bar, pendulum
+from tests.mechanisms import four_bar
 from tests.rows import falling, row_of
-from tests.toys import Disc
 
 
 def points(line: Line2D) -> list[tuple[float, float]]:
@@ -149,14 +146,6 @@ def test_each_chart_has_its_numbers_with_the_look_of_their_method(golden):
         assert all(not panel.get_lines() for panel in draw(failed).axes)
 
 
-def test_the_cpu_time_of_a_series_increases_as_the_step_decreases():
-    steps = ((1e-2, 12.0), (3e-3, 9.0), (1e-3, 9.0), (3e-4, 30.0), (1e-4, 20.0))
-    rough = [row_of("mujoco extended", step=step, angle=step, cpu=cpu) for step, cpu in steps]
-    assert [row.step for row in charts.forwards(rough[::-1])] == [1e-3, 1e-4]
-    plain = falling("pymunk default", METHODS["pymunk default"])
-    assert charts.forwards(plain) == plain
-
-
 def test_families_have_different_looks_and_the_looks_of_registered_families_are_fixed():
     strangers = [f"engine {number:02}" for number in range(50)]
     pairs = {name: (families.role(name, strangers), families.mark(name, strangers)) for name in ("mujoco", *strangers)}
@@ -169,20 +158,6 @@ def test_families_have_different_looks_and_the_looks_of_registered_families_are_
 def has(panel: Axes, wanted: Any) -> bool:
     lines = [np.asarray(line.get_xydata(), dtype=float) for line in panel.get_lines()]
     return any(line.shape == np.shape(wanted) and np.allclose(line, wanted, equal_nan=True) for line in lines)
-
-
-def test_the_points_of_a_body_are_its_joints_at_its_pose():
-    mechanism = four_bar()
-    result = outlines.body_points(mechanism, mechanism.pose)
-    # The joints are at A = (0, 0), B = (0, 0.4), C = (0.4, 0.8), D = (1.2, 0).
-    assert result["crank"] == pytest.approx(np.array([[0.0, 0.0], [0.0, 0.4]]), abs=1e-12)
-    assert result["coupler"] == pytest.approx(np.array([[0.0, 0.4], [0.4, 0.8]]), abs=1e-12)
-    assert result["rocker"] == pytest.approx(np.array([[0.4, 0.8], [1.2, 0.0]]), abs=1e-12)
-    assert outlines.ground_points(mechanism) == pytest.approx(np.array([[0.0, 0.0], [1.2, 0.0]]))
-    # The point of a slot in the ground is not drawn as a support.
-    crank = DrivenSliderCrank(offset=0.1).mechanism()
-    assert any(isinstance(joint, Slot) and joint.first is None for joint in crank.joints)
-    assert outlines.ground_points(crank) == pytest.approx(np.zeros((1, 2)))
 
 
 def test_centrodes_are_drawn_with_the_pose_and_the_centre_of_their_own_sample():
@@ -222,11 +197,3 @@ def test_the_band_ends_at_rounding_and_guides_have_their_slopes():
         assert math.log(top / bottom) / math.log(right / left_end) == pytest.approx(float(text.get_text()))
         assert text.xy == (pytest.approx(right), pytest.approx(top))
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
-
-
-def test_an_outline_is_sorted_along_the_body_and_a_strip_has_equally_spaced_times():
-    mechanism = pendulum(angle=math.pi / 2)  # the bar of 1 m points upwards from the origin
-    result = drawings.outline(mechanism, mechanism.pose, {"bar": ((0.5, 0.0), (0.0, 0.1))})["bar"]
-    assert result == pytest.approx(np.array([[0.0, 0.0], [-0.1, 0.5], [0.0, 1.0]]), abs=1e-12)
-    strip = drawings.Strip(Disc(duration=2.0), "Turning", 5, start=0.5, end=1.5)
-    assert strip.times() == pytest.approx([0.5, 0.75, 1.0, 1.25, 1.5])

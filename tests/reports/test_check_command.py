@@ -16,12 +16,8 @@ from typing import ClassVar
 import mujoco
 import numpy as np
 import pytest
-from pymunk import Space
 
-from engines.mujoco.reading.settings import switch_off as of_mujoco
-from engines.pymunk.reading.own_model import switch_off as of_pymunk
 from reports.check.request import CheckReport, CheckRequest, Refused, run_check
-from reports.cli.check import SWITCHED_OFF
 from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
 
@@ -254,13 +250,3 @@ def test_elements_are_switched_off_by_their_kind_and_an_unknown_kind_is_refused(
     else:
         assert isinstance(answer, CheckReport)
         assert answer.fine
-
-
-@pytest.mark.parametrize(
-    ("switch_off", "model"), [(of_mujoco, lambda: mujoco.MjModel.from_xml_string("<mujoco/>")), (of_pymunk, Space)]
-)
-def test_the_help_names_all_elements_that_can_be_switched_off(switch_off, model):
-    with pytest.raises(ValueError, match="--without is 'rain'") as reported:
-        switch_off(model(), "rain")
-    text = str(reported.value).split("must be one of ")[1].split(", ")
-    assert [label for label in text if label not in re.findall(r"\w+", SWITCHED_OFF)] == []

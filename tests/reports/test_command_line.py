@@ -214,14 +214,6 @@ def test_each_exception_has_its_exit_status_and_its_message(error, status, line,
     assert capfd.readouterr() == ("", line)
 
 
-def test_without_a_command_the_help_is_printed_on_stdout(capfd):
-    assert call() == FINE
-    out, err = capfd.readouterr()
-    assert err == ""
-    assert out.startswith("Usage: crosscheck")
-    assert "Exit status: 0 fine" in " ".join(out.split())
-
-
 @pytest.mark.parametrize(
     ("words", "option"),
     [
@@ -274,11 +266,3 @@ def test_a_run_in_which_every_cell_failed_has_exit_status_1(here, capfd):
     (here / "disc.py").write_text("from tests.toys import Disc\nDISC = Disc()\n")
     assert call("run", "disc.py", "--engine", "mine.py:BAD", "--every", "1") == 1
     assert "none of 1 cells gave a motion" in one_line(capfd.readouterr().err)
-
-
-def test_a_removed_current_folder_is_reported_in_one_line(here, capfd):
-    (here / "gone").mkdir()
-    os.chdir(here / "gone")
-    (here / "gone").rmdir()
-    assert call("run", *ONE_CELL) == REFUSED
-    assert "the current folder was removed" in one_line(capfd.readouterr().err)

@@ -8,14 +8,12 @@ import re
 import pytest
 
 from engines.lagrange.engine import Lagrange
-from engines.registry import OTHERS
 from reports.cli.commands import invoke
 from reports.cli.selection import choose_cells, left_out
 from reports.cli.terminal import print_table, telling
 from reports.model.catalogue import with_scenes
 from reports.model.cells import QUICK
 from reports.model.ending import BadInput, Broken
-from reports.write.templates import without_dead_links
 from tests.toys import Disc
 
 HEADER, ROWS = ("scene", "angle [rad]", "steps"), [("disc | a", 1.2e-4, 10), ("disc b", float("nan"), 3)]
@@ -72,13 +70,6 @@ def test_a_slow_engine_that_is_named_runs_the_largest_step_and_other_steps_are_r
         assert re.fullmatch(rf"step_cost says {scene.samples * cell.every} s, and a run may take 0\.8 s", reason)
 
 
-def test_an_engine_that_compiles_for_long_is_run_only_if_it_is_named():
-    scene = Disc()
-    for engine in (engine for engine in OTHERS if engine.build_time > 1):
-        assert choose_cells([scene], [engine], [], full=False) == choose_cells([scene], [engine], [], full=True) == ()
-        assert [cell.engine for cell in choose_cells([scene], [engine], [], full=False, named=True)] == [engine]
-
-
 def test_a_small_store_gives_only_pages_with_rows_and_no_dead_links(tmp_path, capfd):
     options = ["--results", str(tmp_path)]
     assert invoke(["run", "free_four_bar", "--engine", "pymunk", "--variant", "tuned", "--every", "1", *options]) == 0
@@ -93,9 +84,3 @@ def test_a_small_store_gives_only_pages_with_rows_and_no_dead_links(tmp_path, ca
     out = capfd.readouterr().out
     (row,) = json.loads(out[out.index("\n{") :])["rows"]
     assert (row["method"] if "method" in row else row["engine"], row["every"]) == ("pymunk", 1)
-
-
-def test_a_link_to_a_missing_page_is_replaced_by_its_text():
-    text = "see [the\npage](skate.md#a), [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"
-    reported = without_dead_links(text, lambda name: name == "wheels.md")
-    assert reported == "see the\npage, [another](wheels.md), ![a picture](skate.svg) and [the net](https://a.md)"

@@ -17,7 +17,7 @@ from reports.gate.pytest_plugin import lines, report
 from reports.gate.theory import ROOM, ROOM_OWN, TOO_FEW, Case, cases, checks, count_vacuous, order, theory
 from reports.gate.walk import CaseVerdict
 from reports.model.cells import Cell
-from reports.model.checks import Check, Deviation, complaints, nearest
+from reports.model.checks import Check, Deviation, complaints
 from reports.model.measure import Measurement, blank, measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
@@ -59,16 +59,6 @@ def alone(quantity: str, error: float) -> dict[str, Any]:
 
 def of(found: tuple[Check, ...], quantity: str) -> Check:
     return next(check for check in found if check.quantity == quantity)
-
-
-@pytest.mark.parametrize(
-    ("order_of", "expected"), [(1, 1e-2 * 0.1), (2, 1e-4 * 0.1**2), (4, 1e-8 * 0.1**4), (EXACT, 0.0)]
-)
-def test_two_orders_tell_what_any_order_costs(order_of, expected):
-    assert JUDGE.error("angle", order_of, FINE) == pytest.approx(expected, rel=1e-12)
-    # At first order the time scale of a position is at most that of the angle.
-    drifting = replace(JUDGE, fourth={**JUDGE.fourth, "position": 1e-6})
-    assert order_of > 2 or drifting.error("position", order_of, FINE) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("quantity", NAMES)
@@ -272,20 +262,6 @@ def test_a_deviation_with_an_outcome_excuses_this_outcome_only(outcome):
     assert all("known is saturated" in line for line in reported)
     better = CaseVerdict(case, (row(),), theory(JUDGE, ConvergenceOrder(2), None, row())).theory_complaints
     assert any("deviates no longer" in line for line in better)
-
-
-def test_a_deviation_says_whose_it_is_and_by_how_much_or_how_it_ends():
-    factors = [("soft", 2.0), ("by design: soft", 1.0), ("ours: x", math.nan), ("ours: x", math.inf), ("ours: x", None)]
-    wrong: list[tuple[Any, ...]] = [*factors, ("ours: x", 2.0, Outcome.TORN), ("ours: x", None, Outcome.FINISHED)]
-    for arguments in wrong:
-        with pytest.raises(ValueError, match="deviation"):
-            Deviation(*arguments)
-
-
-def test_the_nearest_check_is_the_one_farthest_beyond_its_bound():
-    far, none = Check("gap", "gap", 3.0, 1.0), Check("error", "angle", 0.0, 0.0)
-    assert nearest((Check("error", "angle", 0.5, 1.0), far)) is far
-    assert (none.passed, replace(none, measured=1.0).nearness) == (True, math.inf)
 
 
 def verdict(*found: Check, known: tuple = (), moved: tuple[Check, ...] = ()) -> CaseVerdict:

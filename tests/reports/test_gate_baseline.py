@@ -20,7 +20,6 @@ from reports.gate.change import (
     Nudge,
     Old,
     change,
-    cost,
     describe_improvements,
     drift,
     growth,
@@ -91,12 +90,6 @@ def test_a_number_that_was_unknown_before_is_reported_and_with_the_same_versions
     assert all(check.passed for check in drift(row(reaction=3e-9), earlier))
     assert not of(change(row(reaction=3e-9), earlier), "reaction").passed
     assert describe_improvements(row(), old()) == ()
-
-
-def test_an_outcome_that_changed_is_noticed_unless_rounding_changes_it():
-    torn = row(outcome=Outcome.TORN)
-    assert [gate(torn, old(Outcome.TORN))[0].passed for gate in (change, drift)] == [True, True]
-    assert change(torn, old(Outcome.SATURATED), [row(outcome=Outcome.SATURATED)])[0].passed
 
 
 def test_the_numbers_of_a_run_that_is_not_resolved_are_held_and_those_of_a_torn_one_are_luck():
@@ -172,14 +165,6 @@ def test_a_scene_of_ours_that_a_baseline_has_no_row_of_fails_and_somebody_elses_
 def test_what_a_baseline_has_and_the_grid_has_lost_is_named():
     cells = {identity(row()): old(), identity(replace(row(), engine="gone")): old()}
     assert lost(Baseline(cells), [Case(SCENE, Toy(), ConvergenceOrder(2))]) == (("disc", "gone default"),)
-
-
-def test_a_cost_is_that_of_the_cells_that_both_have_timed():
-    def pair(now: float, before: float, outcome: Outcome = Outcome.FINISHED) -> tuple[Measurement, Old]:
-        return replace(row(outcome=outcome), cpu=now), replace(old(), cpu=before)
-
-    assert cost([pair(2.0, 1.0), pair(4.0, 3.0), pair(9.0, math.nan), pair(9.0, 1.0, Outcome.TORN)]) == 1.5
-    assert math.isnan(cost([pair(math.nan, 1.0)]))
 
 
 def test_run_and_check_compares_each_row_and_its_cost_with_the_baselines_row_of_the_same_cell(at_home):

@@ -18,7 +18,7 @@ from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, s
 from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
 from reports.pages.scaling.banded import BandedChain
-from reports.pages.scaling.page import FIT_POINTS, MethodSeries, SizePoint, cost_table, crossing, exponent, series_of
+from reports.pages.scaling.page import MethodSeries, SizePoint, cost_table, crossing, series_of
 from reports.write.rows import Rows
 from tests.rows import row_of, table
 from tests.toys import Disc, Plain, Toy
@@ -42,15 +42,6 @@ def test_the_banded_solver_with_rk4_has_order_four():
         run = BandedChain().build(scene.mechanism(), scene.duration / steps)(1, steps)
         errors.append(np.abs(run.pose[-1] - scene.motion([scene.duration]).pose[0]).max())
     assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
-
-
-def test_an_exponent_is_fitted_to_the_largest_sizes():
-    sizes = [1, 10, 100, 200, 400]
-    assert exponent(sizes, [0.5 + 1e-3 * n**2.5 for n in sizes])[0] == pytest.approx(2.5, abs=0.05)
-    assert exponent(sizes, [n**2 if n < 100 else 1e2 * n for n in sizes]) == (pytest.approx(1.0), 100, 400)
-    assert FIT_POINTS == 3
-    assert exponent(sizes, [math.nan, 7, math.nan, 14, 0])[1:] == (10, 200)
-    assert math.isnan(exponent([1, 2], [math.nan, 1.0])[0])
 
 
 @dataclass(frozen=True)
@@ -145,14 +136,6 @@ class Costly(Toy):
 
     def step_cost(self, mechanism):
         return self.cost
-
-
-def test_the_step_and_the_cost_of_a_cell_follow_from_its_number_of_steps():
-    assert Cell(Disc(duration=0.3), Toy(), 7).step == pytest.approx(0.3 / 30 / 7)
-    assert Cell(Disc(duration=0.3), Toy(), 7, samples=11).step == pytest.approx(0.3 / 11 / 7)
-    assert Cell(Disc(), Toy("tuned"), 3).label == "disc / toy tuned / 3.3e-03 s"
-    assert estimated_cost(Cell(Disc(), Costly(), 7)) == pytest.approx(20 * 7 * 3e-3)
-    assert estimated_cost(Cell(Disc(), Costly(), 7, samples=5)) == pytest.approx(5 * 7 * 3e-3)
 
 
 def test_a_grid_has_each_step_below_the_cost_limit_and_always_the_largest_step():

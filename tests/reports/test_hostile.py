@@ -7,7 +7,6 @@ Each case gives an outcome or a one-line message without a traceback.
 from __future__ import annotations
 
 import os
-import random
 import re
 import time
 from dataclasses import dataclass, fields, replace
@@ -18,18 +17,15 @@ import pytest
 
 from engines.loading import load
 from reference.checks import InvalidMechanism
-from reference.mechanism import Mechanism
 from reference.numerics.integration import IntegrationFailed
 from reference.scene import NoMotion, Scene, with_settings
 from reference.trajectory import Trajectory
-from reports.cli import commands, known
+from reports.cli import known
 from reports.model import catalogue
 from reports.model.catalogue import SCENES
 from reports.model.cells import Cell, estimated_cost
-from reports.model.ending import BROKEN, FINE, REFUSED, BadInput
+from reports.model.ending import FINE, REFUSED, BadInput
 from reports.model.measure import blank, measure
-from reports.model.page import Material
-from reports.pages.rendering import render_page
 from reports.run.supervisor import supervise
 from reports.site.markdown import render_html
 from reports.write.csv_files import as_csv
@@ -146,52 +142,6 @@ def test_names_with_markup_are_escaped_on_the_site():
     }
 
 
-def test_tags_in_the_name_of_a_scene_are_escaped_on_its_page():
-    odd = replace(Disc(), rate=3.0)
-    vars(odd)["name"] = "<script>alert(1)</script>"
-    page = catalogue.generic_page(odd, (Toy(),))
-    cells = [Cell(odd, Toy(), every) for every in (1, 3, 10)]
-    files = render_page(page, Material({cell: measure(cell, repeat=False) for cell in cells}, {}), "crosscheck report")
-    assert not [name for name, text in files.items() if "<script" in text and not name.endswith(".py")]
-
-
-COMMANDS = {
-    name: [option for param in commands.command(name).params for option in param.opts if option.startswith("--")]
-    for name in sorted(commands.COMMANDS)
-}
-FREE = ("", " ", "\x1b[31m", "\udcff", "file\nname", "x" * 5000, "é" * 300)  # words that a shell would split
-SEVERAL = """
-. .. / /dev/null /dev/zero - -- -1 0 1e400 nan -inf 1e-320 free_four_bar FREE pymunk lagrange default nope a=b = crank=
-crank=0 x.py x.py:A a:b:c reference:SCENES os:path model.xml <b> [bold] * ' " %s {0} tcp://127.0.0.1:1 local:0 pymunk==0
-CON
-"""
-WORDS = (*FREE, *SEVERAL.split(), "9" * 30, "mujoco tuned")
-
-
-def wrong_line(chance: random.Random) -> list[str]:
-    name = chance.choice([*COMMANDS])
-    text = [name]
-    for _ in range(chance.randint(0, 3)):
-        text += [chance.choice(COMMANDS[name]), chance.choice(WORDS)] if chance.random() < 0.7 else []
-        text += [chance.choice(WORDS)] if chance.random() < 0.3 else []
-    text.insert(1 if chance.random() < 0.5 else len(text), "nope_nope" if chance.random() < 0.75 else "--nonsense")
-    return text  # each line has an unknown word or option, since a valid command would be executed
-
-
-def test_a_wrong_command_line_is_reported_in_one_line(here, capfd):
-    chance = random.Random(22)
-    for _ in range(40):
-        text = wrong_line(chance)
-        status = call(*text)
-        out, err = capfd.readouterr()
-        assert status in (FINE, BROKEN, REFUSED), text
-        assert "Traceback" not in out + err, text
-        assert (out + err).replace("\n", "").isprintable(), text
-        if status == REFUSED:  # lines of progress may precede the message
-            reports = [line.startswith("crosscheck: ") for line in err.splitlines()]
-            assert (sum(reports), reports[-1]) == (1, True), (text, err)
-
-
 @pytest.mark.parametrize(
     "words",
     [
@@ -249,22 +199,6 @@ def test_every_number_of_every_scene_gives_a_finite_start_or_a_refusal(scene: Sc
 
 
 @pytest.mark.parametrize(
-    ("name", "number", "text", "reason"),
-    [
-        ("driven_slider_crank", "rate", "1e200", "body 'crank': its kinetic energy at t = 0 is inf J"),
-        ("driven_four_bar", "rate", "-1e170", "kinetic energy"),
-        ("pendulum_1", "length", "1e200", "its numbers make no mechanism: .*out of range"),
-        ("rolling_cam", "gyration", "1e180", "its numbers make no mechanism"),
-        ("free_four_bar", "crank", "2", "at crank angle"),
-        ("free_four_bar", "coupler", "1e-200", "the loop can't close"),
-    ],
-)
-def test_settings_without_a_mechanism_are_refused_with_invalid_mechanism(name, number, text, reason):
-    with pytest.raises(InvalidMechanism, match=rf"(?s){reason}"):
-        with_settings(BY_NAME[name], {number: text})
-
-
-@pytest.mark.parametrize(
     ("name", "number", "reason"),
     [
         ("free_slider_crank", "gravity", "the motion stops"),
@@ -307,16 +241,3 @@ def test_a_users_truth_that_is_not_finite_is_refused_by_name_and_the_engine_is_n
 
 def test_an_unknown_reaction_in_the_exact_motion_is_accepted():
     assert measure(Cell(Wrong(how="reaction=nan"), Given(disc()), 1), repeat=False).outcome == "finished"
-
-
-def test_an_arithmetic_error_in_a_scene_is_refused_in_a_sentence():
-    @dataclass(frozen=True)
-    class Heavy(Disc):
-        name: ClassVar[str] = "heavy"
-        radius: float = 1e200
-
-        def mechanism(self) -> Mechanism:
-            return self.radius**2  # pyright: ignore[reportReturnType]
-
-    with pytest.raises(NoMotion, match=r"scene 'heavy': its numbers make no mechanism: .*out of range"):
-        Heavy().mechanism()

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-import re
-from dataclasses import fields, replace
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-import reports
 from reference.trajectory import Trajectory
 from reports.model.cells import Cell
 from reports.model.measure import compare, measure
-from reports.model.outcomes import BLOWN, SATURATED, TORN, Outcome, of_motion
-from reports.plots.theme import Theme
+from reports.model.outcomes import BLOWN, SATURATED, TORN, of_motion
 from tests.reports.test_measure import DISC, INSTANTS, LENGTH, SCENE, Given, Pair, disc, shifted
 from tests.rows import row
 from tests.toys import ImpossibleDisc, Toy
@@ -139,25 +135,3 @@ def test_samples_after_the_first_one_that_is_not_finite_are_not_compared():
     trajectory.pose[5] = np.nan
     result = compare(Cell(DISC, Toy(), 1), DISC.mechanism(), trajectory, row())
     assert (result.outcome, result.angle) == ("diverged", 0.0)
-
-
-def test_every_outcome_has_a_meaning_a_letter_of_its_own_and_a_colour_of_the_theme():
-    assert len({outcome.meaning for outcome in Outcome}) == len(Outcome)
-    assert [outcome for outcome in Outcome if outcome.comparable] == ["finished", "converged", "plateau"]
-    # CONVERGED has the letter of another outcome, since a map shows numbers for both.
-    letters = [outcome.letter for outcome in Outcome if outcome is not Outcome.CONVERGED]
-    assert len(set(letters)) == len(letters)
-    assert {outcome.colour for outcome in Outcome} <= {field.name for field in fields(Theme)}
-    wrong = [outcome.hatch for outcome in Outcome if outcome.wrong]
-    assert len(set(wrong)) == len(wrong)
-    assert all(wrong)
-
-
-def test_texts_take_thresholds_from_the_code():
-    """If a text contained a threshold as a number, it could contradict the code."""
-    assert f"more than {TORN:g} of" in Outcome.TORN.meaning
-    assert f"more than {SATURATED:g} rad" in Outcome.SATURATED.meaning
-    folder = Path(reports.__file__).parent
-    for path in [*folder.glob("pages/*/*.md"), *folder.glob("site/**/*.md"), *folder.glob("pages/*.md")]:
-        text = " ".join(path.read_text(encoding="utf-8").split())
-        assert not re.search(r"(twentieth|thousandth|half) (of the mechanism's length|a radian)", text), path

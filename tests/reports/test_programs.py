@@ -13,7 +13,7 @@ from engines import method_name
 from reports.model.convergence import judged
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.write.page_tables import PROGRAM_FOLDER, RESULTS, Program, advice, advised_programs, file_of, program
+from reports.write.page_tables import Program, advice, advised_programs
 from tests.committed_rows import page_rows
 from tests.reports.test_pages import MECHANISMS, texts, undrawn
 
@@ -83,15 +83,3 @@ def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_progr
         error, unit = message[method].split()
         assert unit == quantity(page.quantity).unit
         assert float(error) == pytest.approx(getattr(row, page.quantity), rel=0.01, abs=1e-12), method
-
-
-def test_each_program_belongs_to_a_method_of_its_scene():
-    scenes = [(page.advised_scene, page.engines) for page in MECHANISMS if page.advised_scene is not None]
-    expected = {file_of(scene.name, method_name(engine)) for scene, engines in scenes for engine in engines}
-    assert {f"{PROGRAM_FOLDER}/{path.name}" for path in (RESULTS / PROGRAM_FOLDER).glob("*.*")} <= expected
-
-
-def test_a_wrong_mass_changes_the_result_of_a_program():
-    source = program("free_four_bar", "mujoco extended")
-    right, wrong = run(source)[0]["end"], run(source.replace('mass="0.4"', 'mass="0.4004"'))[0]["end"]
-    assert max(abs(a - b) for a, b in zip(right, wrong, strict=True)) > 1e-6

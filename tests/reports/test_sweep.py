@@ -9,12 +9,10 @@ import pytest
 
 from reports.model.cells import (
     FULL,
-    QUICK,
     USUAL_STEPS,
     Cell,
     is_run_at,
     is_step,
-    too_much,
     usual_cells,
     usual_variants,
 )
@@ -95,11 +93,6 @@ def test_coarse_steps_before_the_asymptotic_slope_do_not_bend_the_order():
     result = fit(STEPS, errors, 0.0)
     assert result.order == pytest.approx(2, abs=0.1)
     assert 3 <= result.points < len(STEPS)
-
-
-def test_of_two_falling_parts_of_one_length_the_finer_gives_the_order():
-    errors = np.array([4e-2, 4e-2 * (STEPS[1] / STEPS[0]), 1e-2, 1e-2 * (STEPS[3] / STEPS[2]) ** 2])
-    assert fit(STEPS[:4], errors, ROUNDING).order == pytest.approx(2)
 
 
 @pytest.mark.parametrize(
@@ -228,8 +221,3 @@ def test_the_usual_variants_are_the_three_words_in_their_order_or_the_first_of_o
     engines = (Toy("default"), Toy("soft"), Toy("one", name="b"), Toy("two", name="b"))
     chosen = {(cell.engine.name, cell.engine.variant) for cell in usual_cells((Disc(),), engines)}
     assert chosen == {("toy", "default"), ("b", "one"), ("b", "two")}
-
-
-def test_a_lower_limit_cuts_the_steps_beyond_the_quick_ones_alone():
-    assert too_much(Cell(Disc(), Toy(), QUICK[-1]), cost_limit=0.0) == ""
-    assert "a run may take 0 s" in too_much(Cell(Disc(), Toy(), 3 * QUICK[-1]), cost_limit=0.0)

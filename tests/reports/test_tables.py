@@ -212,16 +212,6 @@ def test_printed_tables_equal_the_golden_file(golden):
         assert hashlib.sha256(described.encode()).hexdigest()[:8] in text
 
 
-def test_the_order_of_rows_changes_no_cell():
-    for rows in list(at_steps())[:-2]:  # the cells of the last two sets list outcomes in the order of the rows
-        assert cell_of(rows[::-1]) == cell_of(rows)
-
-
-def test_two_rows_for_one_cell_are_refused():
-    with pytest.raises(ValueError, match=r"two rows of 'a x' at a step of 10 ms"):
-        row_tables.outcome_grid([row_of("a x", step=1e-2), row_of("a x", step=1e-2, angle=1.0)])
-
-
 COLUMNS: tuple[tuple[str, Enforcement, Column], ...] = (
     ("default", "engine", Column.SHIPPED),
     ("default", "ours", Column.NAIVE),
@@ -268,15 +258,6 @@ def test_an_error_within_a_cpu_time_counts_only_if_no_smaller_step_exceeds_it():
         assert engine_tables.error_within(rows, "angle", cost) == error
     torn = [*rows[:3], replace(rows[3], outcome=Outcome.TORN)]
     assert engine_tables.error_within(torn, "angle", 9.0) == math.inf
-
-
-def test_the_least_error_falls_as_the_cpu_time_increases():
-    rough = falling("mujoco extended", (1e-2, 1e-5, 1e-7))
-    rough[0] = replace(rough[0], cpu=0.05)  # the cost is more than at the next smaller step
-    points = engine_tables.error_by_cost([rough, falling("mujoco tuned", (1e-1, 1e-3, 1e-3))], "angle")
-    assert points == sorted(points)
-    assert [error for _, error in points] == sorted((error for _, error in points), reverse=True)
-    assert min(error for _, error in points) == 1e-7
 
 
 def test_a_step_is_not_reliable_if_a_smaller_step_has_a_larger_error():

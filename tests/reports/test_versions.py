@@ -16,7 +16,7 @@ from reports.cli.commands import invoke
 from reports.model.ending import BadInput, Broken
 from reports.model.outcomes import Outcome
 from reports.run import installed as installation
-from reports.run.installed import built, distributions_in, installed
+from reports.run.installed import installed
 from reports.versions import builds
 from reports.versions.builds import compare_builds
 from reports.versions.column import VersionRequest, column, modules_in
@@ -116,13 +116,6 @@ def test_a_version_that_crashes_while_it_is_imported_gives_rows(here):
     result = column("3.0", request, [DEFAULT])
     assert [row.outcome for row in result.rows] == [Outcome.ABORTED]
     assert "aborted with signal" in result.trouble
-
-
-def test_a_build_has_the_version_of_its_metadata_and_not_of_its_module(tmp_path):
-    index = toy(tmp_path, "7.0.0", "version = '2.0.0'\n")
-    assert distributions_in(index) == {"toyengine": "7.0.0"}
-    assert modules_in(index) == ("toyengine",)
-    assert built(index) == index
 
 
 class Pip:

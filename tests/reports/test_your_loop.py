@@ -19,7 +19,7 @@ from engines.mujoco.writers import MJCF
 from engines.pymunk.written_script import SCRIPT
 from reference.scene import Scene
 from reports.pages.your_loop import page
-from reports.pages.your_loop.experiments import MILLISECONDS_PER_SAMPLE, Fresh, draw, run_lines
+from reports.pages.your_loop.experiments import MILLISECONDS_PER_SAMPLE, run_lines
 from reports.pages.your_loop.linkages import LINKAGES
 from tests.committed_rows import committed_rows
 
@@ -183,13 +183,6 @@ def test_the_lines_do_not_change_limits_or_the_pose_of_a_body_with_an_offset_cen
     off.add(body)
     run_lines(pymunk.Space(), page.PYMUNK_LINES)["close"](off, 1e-2, 16)
     assert (*body.position, body.angle) == pytest.approx((5, 2, 0.7), abs=1e-14)
-
-
-def test_a_random_mechanism_depends_only_on_its_seed():
-    first, again, other = draw(page.LOOP, 0), draw(page.LOOP, 0), draw(page.LOOP, 1)
-    assert first == again != other
-    earlier, later = page.PYMUNK_CASES[0].engines
-    assert Fresh(later, page.LOOP).error(0) < Fresh(earlier, page.LOOP).error(0)
 
 
 def test_the_lines_reduce_gaps_and_angle_errors_of_a_four_bar_tenfold():
