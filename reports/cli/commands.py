@@ -19,7 +19,7 @@ COMMANDS = {
     "report": ("report:report", "Write pages, charts, errors.csv and timings.csv from the stored results."),
     "bench": ("bench:bench", "Compare the CPU times of `run` and of bare loops."),
     "shapes": ("shapes:shapes", "Write the two shapes that generate a motion when the one rolls on the other."),
-    "errata": ("errata:errata", "The chapter's printed slips: each formula's value as printed and as it must be."),
+    "errata": ("show:errata", "The chapter's printed slips: each formula's value as printed and as it must be."),
     "conform": ("conform:conform", "Check that an engine keeps the contract: signs, instants, orders, refusals."),
     "search": ("search:search", "Search random mechanisms for faults, and reduce and write each finding."),
     "atlas": ("atlas:atlas", "Map where methods fail: step against the parameter that breaks a scene."),

@@ -31,12 +31,11 @@ from reports.run.files import write_whole
 from reports.run.installed import installed
 from reports.search import plan
 from reports.search.chunk import CHECKS_HEADER, FINDINGS_HEADER, CaseResult, finding_rows, make_chunks, summary_rows
-from reports.search.oracles import DEFAULT_ORACLES, ORACLES
 from reports.search.parts import SINGULAR_KINDS
 from reports.search.release import DISTRIBUTIONS
 from reports.search.run import DEFAULT_CASES, Search
 from reports.search.shrinking import files_of, line_of
-from reports.search.subjects import Adapted, Alone, Subject
+from reports.search.subjects import DEFAULT_ORACLES, ORACLES, Adapted, Alone, Subject
 
 FRESH_CASES = 10  # Number of cases for each engine with a fresh seed.
 USUAL = ",".join(DEFAULT_ORACLES)

@@ -26,12 +26,11 @@ from reports.search.chunk import (
     stored_answers,
 )
 from reports.search.mechanisms import SHAPE_COUNT
-from reports.search.oracles import LAW_CHECKS, ORACLES, Oracle, column_of
 from reports.search.planted import FAULT_SIZES, PLANTED_FAULTS, PlantedControl, all_controls
 from reports.search.recipe import DEPENDENCE_LIMIT, SINGULAR_LIMIT
 from reports.search.release import release_of
 from reports.search.shrinking import Shrink, choose_worst, line_of
-from reports.search.subjects import Adapted, Alone, Subject, is_shaped
+from reports.search.subjects import LAW_CHECKS, ORACLES, Adapted, Alone, Oracle, Subject, column_of, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
 

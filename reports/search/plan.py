@@ -15,10 +15,9 @@ from reports.model.fingerprint import OURS, ROOT, SHORT, digest
 from reports.search import mechanisms
 from reports.search.chunk import Chunk, make_chunks
 from reports.search.mujoco_alone import HINGED_KINDS
-from reports.search.oracles import DEFAULT_ORACLES
 from reports.search.parts import ALL_KINDS, TOGGLE
 from reports.search.recipe import build
-from reports.search.subjects import Adapted, Alone, Subject, is_shaped
+from reports.search.subjects import DEFAULT_ORACLES, Adapted, Alone, Subject, is_shaped
 
 COMMIT_RULE, SOURCES_RULE = "the last commit's hash", "the SHA-256 of all sources, as there is no git"
 SEED_DECADES = (0, 2, 4)  # Decades by seed.

@@ -24,10 +24,9 @@ from reports.search.chunk import (
     stored_answers,
     unfinished_cases,
 )
-from reports.search.oracles import DEFAULT_ORACLES
 from reports.search.planted import all_controls
 from reports.search.shrinking import Shrink, choose_worst
-from reports.search.subjects import Subject
+from reports.search.subjects import DEFAULT_ORACLES, Subject
 
 STORE = "cells.sqlite"
 CHUNK_LIMIT = 120.0  # CPU time of a chunk [s].

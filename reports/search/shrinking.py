@@ -13,10 +13,9 @@ from engines import Engine
 from reference.checks import InvalidMechanism
 from reports.model.tasks import Answer, Task, Values
 from reports.search.chunk import CaseResult, Chunk
-from reports.search.oracles import ORACLES
 from reports.search.parts import Case, case_from_json, case_to_json
 from reports.search.scripts import write_script
-from reports.search.subjects import OracleResult, Subject
+from reports.search.subjects import ORACLES, OracleResult, Subject
 
 
 def shrink_case(case: Case, still: Callable[[Case], bool], seconds: float) -> Case:

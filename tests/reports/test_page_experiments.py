@@ -27,7 +27,6 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material
 from reports.model.tasks import Answer, Motion, Task, trajectory_of
 from reports.pages import claims, common
-from reports.pages.at_a_glance import glance_table, sentences
 from reports.pages.centrodes import page as centrodes
 from reports.pages.engines.page import (
     ELEMENT_EXAMPLES,
@@ -41,6 +40,7 @@ from reports.pages.engines.page import (
 )
 from reports.pages.engines.page import PAGE as ENGINES_PAGE
 from reports.pages.four_bar import page as four_bar
+from reports.pages.index import glance_table, sentences
 from reports.pages.n_four_bar import page as n_four_bar
 from reports.pages.rolling import page as rolling
 from reports.pages.skate import experiments as skate

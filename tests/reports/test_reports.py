@@ -1,4 +1,4 @@
-"""Tests of the rendering of invented rows: numbers, tables, files, digests and pictures."""
+"""Tests of the rendering of invented rows, and of numbers that keep their published text."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import math
 import re
 import xml.etree.ElementTree as xml
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -14,11 +16,15 @@ import pytest
 
 from reports.cli.report import moving_picture
 from reports.cli.selection import choose_cells
+from reports.gate.theory import cases
+from reports.model.catalogue import PAGES
 from reports.model.cells import QUICK, Cell, sweep_cells
 from reports.model.convergence import Verdict
+from reports.model.ending import BadInput
 from reports.model.measure import measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Observation, Page
+from reports.model.quantities import OF, QUANTITIES, agrees, quantity
 from reports.model.tasks import Answer, Task
 from reports.pages.four_bar.page import MOVING_METHODS, MOVING_TASKS
 from reports.pages.index import render_readme
@@ -26,10 +32,12 @@ from reports.pages.rendering import render_all, render_page
 from reports.pages.your_loop.page import FRESH, PASTED_CELLS
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.plots.theme import DARK
+from reports.write import csv_files
+from reports.write.provenance import machine
 from reports.write.rows import lookups
 from reports.write.templates import environment, marks
 from reports.write.unmeasured import NOT_MEASURED, UNMEASURED, MissingAsNaN, without_marks
-from tests.rows import falling, row_of
+from tests.rows import ROW, falling, row_of
 from tests.toys import FAILURES, Disc, FailingToy, Toy
 
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))
@@ -140,8 +148,8 @@ def test_convergence_on_a_page_is_that_of_its_quantity():
     errors = falling("mujoco default", (1e-2, 3e-5, 3e-5, 3e-5), "position")
     errors = [replace(r, angle=1e-2 * r.step**2) for r in errors]
     rows = {Cell(DISC, Toy(), 10**i): r for i, r in enumerate(errors)}
-    for quantity, text_value in (("position", "plateau **3e-5**"), ("angle", "2.00 (±")):
-        page = replace(DISCS, scenes=(DISC,), quantity=quantity)
+    for name, text_value in (("position", "plateau **3e-5**"), ("angle", "2.00 (±")):
+        page = replace(DISCS, scenes=(DISC,), quantity=name)
         text = render_page(page, Material(rows), "the command")["base.md"]
         assert text_value in next(line for line in text.splitlines() if line.startswith("| mujoco default"))
 
@@ -219,3 +227,78 @@ def test_a_missing_number_is_marked_and_removes_its_clause(template, said):
         "pictures": MissingAsNaN(drawn="drawn.svg"),
     }
     assert without_marks(environment().from_string(template).render(options)) == said
+
+
+NAMES = tuple(quantity.name for quantity in QUANTITIES)
+CELL = Cell(Disc(), Toy(), 1)
+
+
+@cache
+def numbers_of_two_processors() -> list[dict[str, str]]:
+    text = Path(__file__).with_name("two_processors.csv").read_text(encoding="utf-8")
+    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+
+
+@cache
+def amplified() -> dict[tuple[str, str], float]:
+    return {(case.scene.name, case.method): case.amplified for case in cases(PAGES)}
+
+
+def test_the_numbers_of_two_processors_agree_with_either_as_the_baseline():
+    assert {line["quantity"] for line in numbers_of_two_processors()} == {*NAMES}
+    for line in numbers_of_two_processors():
+        name, factor = line["quantity"], amplified()[line["scene"], line["method"]]
+        first, second = float(line["one"]), float(line["other"])
+        assert agrees(name, first, second, factor), line
+        assert agrees(name, second, first, factor), line
+
+
+@pytest.fixture
+def before(tmp_path: Path) -> dict[str, str]:
+    (tmp_path / "errors.csv").write_text(csv_files.as_csv([ROW], timings=False))
+    (tmp_path / "timings.csv").write_text(csv_files.as_csv([ROW], timings=True, header=f"a date\n{machine()}"))
+    published = csv_files.read_published(tmp_path)
+    assert (published.machine, published.engines) == (machine(), ("toy",))
+    (texts,) = published.rows.values()
+    return dict(texts)
+
+
+@pytest.mark.parametrize("name", csv_files.ERROR_COLUMNS)
+def test_an_error_keeps_its_published_text_only_within_rounding(name, before):
+    published, rounding = getattr(ROW, name), quantity(OF.get(name, name)).rounding
+    assert (
+        getattr(
+            csv_files.with_published_numbers(replace(ROW, **{name: published + 0.9 * rounding}), before, True), name
+        )
+        == published
+    )
+    changed = getattr(
+        csv_files.with_published_numbers(replace(ROW, **{name: published * 1.0123456}), before, True), name
+    )
+    assert changed == float(f"{published * 1.0123456:.4g}") != published
+
+
+@pytest.mark.parametrize(("name", "noise"), csv_files.TIMING_NOISE.items())
+def test_a_time_is_kept_within_noise_and_on_the_same_machine(name, noise, before):
+    published = getattr(ROW, name)
+    within, beyond = (replace(ROW, **{name: published * factor}) for factor in (0.99 * noise, 1.01 * noise))
+    for where, same in ((machine(), True), ("another machine", False)):
+        of_run = csv_files.Published(
+            {tuple(csv_files.cell_text(ROW, column) for column in csv_files.IDENTITY_COLUMNS): before}, where
+        )
+        assert (getattr(csv_files.as_published({CELL: within}, of_run)[CELL], name) == published) == same
+    assert getattr(csv_files.with_published_numbers(beyond, before, True), name) != published
+
+
+def test_a_new_row_or_a_changed_outcome_does_not_get_published_numbers(before):
+    moved = replace(ROW, position=ROW.position * (1 + 1e-12), cpu=1.01 * ROW.cpu)
+    torn = csv_files.with_published_numbers(replace(moved, outcome=Outcome.TORN), before, True)
+    assert torn.cpu == csv_files.with_published_numbers(moved, {}, True).cpu == float(f"{1.01 * ROW.cpu:.4g}")
+    assert torn.outcome == Outcome.TORN
+
+
+def test_a_file_without_the_columns_of_rows_is_refused_by_name(tmp_path):
+    (tmp_path / "errors.csv").write_text("scene,engine\na,b\n")
+    with pytest.raises(BadInput, match=r"errors\.csv has no column 'variant'"):
+        csv_files.read_published(tmp_path)
+    assert not csv_files.read_published(tmp_path / "nowhere").rows

@@ -33,14 +33,13 @@ from reference.trajectory import Trajectory
 from reports.gate.change import Altered
 from reports.search import law, motions, plan
 from reports.search.law import LAW_TOLERANCE
-from reports.search.oracles import DEFAULT_ORACLES
 from reports.search.page import known_subjects
 from reports.search.parts import ALL_KINDS, FIRST_KINDS
 from reports.search.planted import PlantedFault
 from reports.search.recipe import build
 from reports.search.relations import RELATIONS
 from reports.search.shrinking import replay_finding
-from reports.search.subjects import OUR_ERROR, Adapted, OracleResult
+from reports.search.subjects import DEFAULT_ORACLES, OUR_ERROR, Adapted, OracleResult
 from tests.wrong.adapters import Spoiled
 
 SEED = 1
