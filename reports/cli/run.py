@@ -172,14 +172,10 @@ def run_interruptible(
     """Run cells and tasks, show the progress, and return the number of items run. All processors are used by default.
     After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt."""
     by = crew or cluster.pool(None)
-    if is_cold(adaptive=False) and any(map(_needs_machine_code, items)):
+    if is_cold(adaptive=False) and any(isinstance(item, Task) or "numba" in item.engine.packages for item in items):
         print(COMPILING_NOTE, file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
         return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)
-
-
-def _needs_machine_code(item: Cell | Task) -> bool:
-    return isinstance(item, Task) or "numba" in item.engine.packages
 
 
 def refuse_nothing_but_failures(rows: Sequence[Measurement]) -> None:

@@ -80,38 +80,23 @@ def stepped(
     soft: Regularisation | None = None,
     project: bool = False,
 ) -> Trajectory:
-    """The motion of a mechanism, computed by compiled steps if possible, else by `in_numpy`."""
-    compiled = _compiled(mechanism, samples, spacing, order, every, soft, project)
-    return compiled or in_numpy(mechanism, samples, spacing, order, every, soft, project)
+    """The motion of a mechanism, computed by compiled steps if possible, else by `in_numpy`. Compiled steps need numba,
+    independent ideal rows and a motion without divergence. Regularised rows may be dependent, since their compliances
+    make the system regular, but compiled steps do not project regularised joints."""
+    machine = _machine(mechanism, soft)
+    if machine is not None and not (project if soft is not None else machine.has_dependent_rows):
+        poses, twists = machine.empty_samples(samples)
+        iterations = PROJECTION_ITERATIONS if project else 0
+        if machine.fixed_steps(TABLEAUS[order], iterations, spacing / every, every, 0, poses, twists) == samples:
+            reactions, _ = machine.reactions(spacing, poses, twists)
+            if np.all(np.isfinite(reactions)) and machine.smallest_pivot >= RANK_TOLERANCE:
+                t = np.arange(samples + 1, dtype=np.float64) * spacing
+                return Trajectory(t, poses, twists, reactions)
+    return in_numpy(mechanism, samples, spacing, order, every, soft, project)
 
 
 def _samples(scene: Scene) -> int:
     return max(1, math.floor(min(scene.duration, scene.comparable_until) / scene.spacing * (1 + 1e-12)))
-
-
-def _compiled(
-    mechanism: Mechanism,
-    samples: int,
-    spacing: float,
-    order: int,
-    every: int,
-    soft: Regularisation | None,
-    project: bool,
-) -> Trajectory | None:
-    """The motion by compiled steps. The result is None without numba, for dependent ideal rows, and after divergence.
-    Regularised rows may be dependent, since their compliances make the system regular. Compiled steps do not project
-    regularised joints."""
-    machine = _machine(mechanism, soft)
-    if machine is None or (project if soft is not None else machine.has_dependent_rows):
-        return None
-    poses, twists = machine.empty_samples(samples)
-    iterations = PROJECTION_ITERATIONS if project else 0
-    if machine.fixed_steps(TABLEAUS[order], iterations, spacing / every, every, 0, poses, twists) < samples:
-        return None
-    reactions, _ = machine.reactions(spacing, poses, twists)
-    if not np.all(np.isfinite(reactions)) or machine.smallest_pivot < RANK_TOLERANCE:
-        return None
-    return Trajectory(np.arange(samples + 1, dtype=np.float64) * spacing, poses, twists, reactions)
 
 
 def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel | None:

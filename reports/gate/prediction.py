@@ -163,14 +163,6 @@ def scaled_softness_error(
     return error
 
 
-def _larger_finite(first: Mapping[str, float], second: Mapping[str, float]) -> Mapping[str, float]:
-    out = {}
-    for name in QUANTITY_NAMES:
-        known = [value for value in (first[name], second[name]) if not math.isnan(value)]
-        out[name] = max((v for v in known if math.isfinite(v)), default=math.inf) if known else math.nan
-    return out
-
-
 def kinds(scene: Scene, engines: Iterable[Engine]) -> frozenset[SoftKind]:
     """The kinds of regularisation that these engines declare for a scene."""
     mechanism = scene.mechanism()
@@ -261,7 +253,11 @@ def _order_errors(scene: Scene, order: int, every: int) -> Mapping[str, float]:
     is ignored unless both runs have such an error."""
     runs = [errors(scene, order, every, project=project) for project in (False, True)]
     followed = [run for run in runs if run["angle"] <= SATURATED] or runs
-    return _larger_finite(followed[0], followed[-1])
+    out = {}
+    for name in QUANTITY_NAMES:
+        known = [run[name] for run in followed if not math.isnan(run[name])]
+        out[name] = max(filter(math.isfinite, known), default=math.inf) if known else math.nan
+    return out
 
 
 MOST_BODIES = 20  # Pages do not use the judge for scenes with more bodies, since a run would take minutes.

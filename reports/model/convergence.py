@@ -71,10 +71,6 @@ class Sweep:
         return self.verdict is Verdict.PLATEAU and self.best < self.plateau / 2
 
 
-def local_slopes(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    return np.diff(np.log(errors)) / np.diff(np.log(steps))
-
-
 def fit(steps: Iterable[float], errors: Iterable[float], rounding: float) -> Fit:
     """Determine how errors depend on the step [s]. Errors that are not finite are left out. An error of at most
     `rounding` counts as rounding."""
@@ -94,7 +90,7 @@ def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
     if len(above) < 2:
         return Fit(Verdict.ROUNDING if reaches else Verdict.TOO_FEW)
     h, e = np.array([p[0] for p in above]), np.array([p[1] for p in above])
-    slopes = local_slopes(h, e)
+    slopes = np.diff(np.log(e)) / np.diff(np.log(h))
     falling = _longest_run(slopes > FLAT)
     limit, uncertainty = (NAN, NAN) if reaches else _plateau(h, e, slopes)
     order, points, spread = _order(h, e, slopes, falling, limit)

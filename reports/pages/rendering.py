@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from datetime import UTC, datetime
 from types import MappingProxyType
 from typing import Any
 
@@ -26,7 +27,7 @@ from reports.write.columns import describe_inner_runs, enforcement_by_method, wi
 from reports.write.csv_files import as_csv, descriptions_csv
 from reports.write.experiments import render_experiment
 from reports.write.page_tables import advised_programs
-from reports.write.provenance import machine, row_versions, today, versions
+from reports.write.provenance import machine, row_versions, versions
 from reports.write.templates import inert_page, template_of
 
 
@@ -128,7 +129,7 @@ def render_all(
     by_engine = {engine: row_versions(engine) for engine in dict.fromkeys(engines.values())}
     made_with = {key: by_engine[engine] for key, engine in engines.items()}
     files["errors.csv"] = as_csv(rows.values(), timings=False, made_with=made_with)
-    header = f"{today()}\n{machine()}\n{versions(engines_of(pages))}\n{command}\n"
+    header = f"{datetime.now(UTC):%Y-%m-%d}\n{machine()}\n{versions(engines_of(pages))}\n{command}\n"
     header += "CPU seconds: cpu per simulated second; build once"
     files["descriptions.csv"] = descriptions_csv(rows.values(), made_with)
     files["timings.csv"] = as_csv(rows.values(), timings=True, header=header)

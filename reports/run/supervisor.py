@@ -62,11 +62,6 @@ class Job:
     earlier_outside: bool = False  # Whether another program killed the worker of the first try.
 
 
-def wall_limit(limit: float) -> float:
-    """Limit of wall time [s] for a limit of CPU time [s], on a machine that is up to ten times overloaded."""
-    return 10 * limit + 60
-
-
 def supervise(
     function: Callable[[Any], Any],
     items: Iterable[Any],
@@ -78,12 +73,12 @@ def supervise(
     """Yield (item, result or Loss, note) in the order of completion. The note says how a first try has aborted.
 
     `function` must be importable. limit: CPU seconds of all threads for an item. wall: seconds for an item that sleeps,
-    by default `wall_limit`. `watch` is called a few times a second with the running items. Raises WorkersLost if no
-    worker can be started. The workers end when the iterator is closed.
+    by default ten times `limit` and a minute. `watch` is called a few times a second with the running items. Raises
+    WorkersLost if no worker can be started. The workers end when the iterator is closed.
     """
     one_thread_each()
     with temporary_folder() as folder:
-        wall = wall_limit(limit) if wall is None else wall
+        wall = 10 * limit + 60 if wall is None else wall  # The machine may be overloaded ten times.
         pool = Pool(function, items, (str(folder), limit, wall), min(workers, MOST_WORKERS))
         try:
             yield from pool.results(watch)

@@ -105,20 +105,25 @@ class Search:
         return list(iter_case_results(stored_answers(self.store, chunks)))
 
     def _run_batch(self, batch: Sequence[Chunk]) -> None:
-        """Run the chunks of a batch, and the cases of crashed chunks one by one. Without a time limit there is one
-        wave, since workers are idle between two waves."""
+        """Run the chunks of a batch, and the cases of crashed chunks one by one."""
         progress = self.progress(self.store, batch, CHUNK_LIMIT, "chunks", size=lambda chunk: chunk.count)
         with progress as (waiting, done, watch):
-            size = len(waiting) if self.seconds is None else WAVE_CHUNKS * self.crew.threads
 
             def count(answer: Answer, single: int = 0) -> None:
                 done(answer, self._count(answer, single))
 
-            while waiting and not self.over:
-                wave, waiting = waiting[:size], waiting[size:]
+            for wave in self._waves(waiting, WAVE_CHUNKS):
                 self._run_tasks(wave, CHUNK_LIMIT, count, watch)
                 singles = missing(unfinished_cases(stored_answers(self.store, wave)), self.store, CHUNK_LIMIT)
                 self._run_tasks(singles, CHUNK_LIMIT, lambda answer: count(answer, 1), watch)
+
+    def _waves(self, tasks: Sequence[Any], per_worker: int) -> Iterator[Sequence[Any]]:
+        """Yield parts of the tasks until the time limit, or all of them, since workers are idle between two waves."""
+        size = len(tasks) if self.seconds is None else per_worker * self.crew.threads
+        for first in range(0, len(tasks), size or 1):
+            if self.over:
+                return
+            yield tasks[first : first + size]
 
     def _run_tasks(self, tasks: Sequence[Any], limit: float, done: Callable[..., None], watch: Any) -> None:
         run_into(self.store, tasks, False, limit, self.crew.threads, done, watch, supervised=self.crew.supervise)
@@ -146,11 +151,9 @@ class Search:
         tasks = [Shrink.of(check, case) for check, case in choose_worst(results)]
         if not tasks:
             return {}
-        begin = monotonic()
+        self.begin = monotonic()
         with self.progress(self.store, tasks, CHUNK_LIMIT, "findings") as (waiting, done, watch):
-            size = len(waiting) if self.seconds is None else self.crew.threads
-            while waiting and (self.seconds is None or monotonic() - begin < self.seconds):
-                wave, waiting = waiting[:size], waiting[size:]
+            for wave in self._waves(waiting, 1):
                 self._run_tasks(wave, CHUNK_LIMIT, done, watch)
         answers = self.store.answers(tasks)
         return {task: answers[task] for task in tasks if task in answers}

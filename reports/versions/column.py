@@ -6,7 +6,8 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -26,10 +27,9 @@ from reports.run.files import temporary_folder
 from reports.run.installed import environment
 from reports.run.running import TIME_LIMIT, missing, run_into
 from reports.run.store import Store
-from reports.run.supervisor import WorkersLost
+from reports.run.supervisor import WorkersLost, supervise
 from reports.versions.trees import Trees, engines_for_trees
 
-LACKING = ("AttributeError:", "ImportError:", "ModuleNotFoundError:")
 LONGEST_LAST_LINE = 300  # Largest number of characters from the last line that a process has printed.
 
 Watch = Callable[[Sequence[str]], None]
@@ -84,8 +84,8 @@ def column(
     for message in _messages(request):
         match message:
             case Measurement():
-                rows.append(_unsupported_if_lacking(message, version))
-                done(rows[-1])
+                rows.append(message)
+                done(message)
             case (Trees() as task, answer):
                 trees.append((task, answer))
             case list():
@@ -112,16 +112,16 @@ def cells_of(request: VersionRequest, engines: Sequence[Engine]) -> list[Cell]:
     return [cell for cell in cells if estimated_cost(cell) <= request.most]
 
 
-def lacks_a_name(result: Measurement | Answer) -> bool:
-    """Whether a run failed because our adapter uses a name that does not exist in this version."""
-    return result.outcome in (Outcome.FAILED, Outcome.LOST) and result.sentence.startswith(LACKING)
+def with_known_names(function: Callable[[Any], Any], item: Any) -> Any:
+    """The result of a job. An adapter that uses a name that this version lacks does not support the version."""
+    try:
+        return function(item)
+    except (AttributeError, ImportError) as error:
+        return Loss(Outcome.UNSUPPORTED, f"this version lacks what our adapter calls: {error}")
 
 
-def _unsupported_if_lacking(row: Measurement, version: str) -> Measurement:
-    if lacks_a_name(row):
-        sentence = f"{row.engine} {version} lacks what our adapter calls: {row.sentence.partition(': ')[2]}"
-        return replace(row, outcome=Outcome.UNSUPPORTED, sentence=sentence)
-    return row
+def _supervised(function: Callable[[Any], Any], *terms: Any) -> Iterator[Any]:
+    return supervise(partial(with_known_names, function), *terms)
 
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
@@ -216,6 +216,7 @@ def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any
             for row in store.get(cell for cell in cells if cell not in waiting).values():
                 send(row)
         options: dict[str, Any] = {"watch": lambda items: send([item.label for item in items])}
+        options["supervised"] = _supervised
         options["done"] = lambda result: send(result) if isinstance(result, Measurement) else None
         run_into(store, [*cells, *tasks], request.fresh, request.limit, **options)
         for task, answer in store.answers(tasks).items():

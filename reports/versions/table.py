@@ -19,7 +19,7 @@ from reports.model.quantities import DIGITS, agrees, quantity
 from reports.model.tasks import Answer
 from reports.run.installed import numbers
 from reports.versions.catalogue import compared_versions
-from reports.versions.column import VersionColumn, lacks_a_name
+from reports.versions.column import VersionColumn
 from reports.versions.trees import Trees
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
@@ -100,17 +100,15 @@ def _shortened(sentence: str) -> str:
 
 
 def _entry_of_trees(engine: str, version: str, trees: Trees, answer: Answer) -> Entry:
-    outcome, error, sentence = answer.outcome, math.nan, _shortened(answer.sentence)
+    error, sentence = math.nan, _shortened(answer.sentence)
     if answer.finished:
         misses = answer.array("miss")
         wrong = sum(not miss <= WRONG_TREE for miss in misses)
         error = max((math.inf if math.isnan(miss) else float(miss) for miss in misses), default=math.nan)
         sentence = f"{wrong} of {len(misses)} by more than {WRONG_TREE:g}"
-    elif lacks_a_name(answer):
-        outcome = Outcome.UNSUPPORTED
     scene = f"random trees ({trees.bodies} bodies, {trees.loops} loops)"
     method = (scene, trees.method.variant, math.nan, ACCELERATION)
-    return Entry(engine, version, *method, error, outcome, math.nan, sentence)
+    return Entry(engine, version, *method, error, answer.outcome, math.nan, sentence)
 
 
 def wrong_trees(entry: Entry) -> tuple[int, int]:

@@ -174,10 +174,8 @@ def with_published_numbers(
         for name in ERROR_COLUMNS
     }
     for name, noise in TIMING_NOISE.items():
-        same[name] = same_machine and name in before and within_factor(getattr(row, name), float(before[name]), noise)
+        now, old = getattr(row, name), float(before.get(name, "nan"))
+        is_near = old / noise <= now <= old * noise or (now != now and old != old)
+        same[name] = same_machine and name in before and is_near
     numbers = {name: float(before[name] if yes else f"{getattr(row, name):.{DIGITS}g}") for name, yes in same.items()}
     return replace(row, **numbers, runs=int(before["runs"]) if same["cpu"] else row.runs)
-
-
-def within_factor(now: float, before: float, factor: float) -> bool:
-    return before / factor <= now <= before * factor or (now != now and before != before)

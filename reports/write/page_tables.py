@@ -29,10 +29,6 @@ EQUAL_COST_FACTOR = 1.25
 DeclaredError = Callable[[str, float], float]
 
 
-def undeclared(method: str, step: float) -> float:
-    return math.nan
-
-
 def compared_step(rows: Iterable[Measurement]) -> float:
     """The step [s] of the sweep whose ratio to COMPARED_STEP is nearest to 1, or NaN without rows."""
     steps = {row.step for row in rows if row.purpose == "sweep"}
@@ -43,7 +39,7 @@ def scene_table(
     rows: Sequence[Measurement],
     name: str,
     enforcement: Mapping[str, str] | None = None,
-    declared: DeclaredError = undeclared,
+    declared: DeclaredError = lambda method, step: math.nan,
     inner_runs: Mapping[str, str] = MappingProxyType({}),
 ) -> str:
     """A Markdown table of the methods in one scene, with errors and cost at `compared_step` and convergence.

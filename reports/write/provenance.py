@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import platform
 from collections.abc import Iterable
-from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
@@ -62,7 +61,3 @@ def _processor() -> str:
     except OSError:
         pass
     return platform.processor() or "processor unknown"
-
-
-def today() -> str:
-    return datetime.now(UTC).strftime("%Y-%m-%d")

@@ -86,12 +86,6 @@ def absent_contact(cell: Cell, run: Trajectory) -> float:
     return float(np.mean(np.abs(run.reaction[rolling, 1]) < 1e-3 * weight))
 
 
-def chatter(material: Material) -> list[Observation]:
-    return observe_each(
-        material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
-    )
-
-
 def absence(material: Material) -> dict[str, Any]:
     """`absent`: the smallest `absent_contact` of all runs of CHATTERING."""
     shares = [absent_contact(cell, run) for cell, run in material.motions(CHATTERING).items()]
@@ -192,7 +186,12 @@ PAGE = scene_page(
             context=after_friction,
         ),
         Failure(
-            "Chatter on curved ground", tasks=tuple(map(Motion, CHATTERING)), observations=chatter, context=absence
+            "Chatter on curved ground",
+            tasks=tuple(map(Motion, CHATTERING)),
+            observations=lambda material: observe_each(
+                material, CHATTERING, lambda cell, run: f"absent in {100 * absent_contact(cell, run):.0f} % of samples"
+            ),
+            context=absence,
         ),
         Failure("Steps far too large", cells=TOO_LARGE, context=least_opening),
         corner=f"{SquareOnCatenaries().corner:.4f}",

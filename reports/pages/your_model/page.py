@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 from engines.reading import ReadingTerms
 from reference.scenes.four_bar.scenes import FreeFourBar
-from reports.check.checked import CheckResult, SettingRun, SweepPlan, check, read_user_model, readers
+from reports.check.checked import SweepPlan, check, read_user_model, readers
 from reports.check.document import check_data
 from reports.check.pictures import picture_data_from_text, picture_data_of, render_pictures
 from reports.model.page import Material, Page
@@ -51,7 +51,8 @@ class ModelCheck(Task):
             setting.pop("cpu")
             setting.pop("front", None)
         # The largest sufficient step is chosen, because the cheapest sufficient setting depends on the machine.
-        coarsest = coarsest_enough(checked)
+        enough = [setting for setting in checked.table if setting.error <= checked.tolerance]
+        coarsest = max(enough, key=lambda setting: setting.change.dt, default=None)
         document["advised"] = coarsest and {
             "words": coarsest.change.words,
             "step": coarsest.change.dt,
@@ -60,12 +61,6 @@ class ModelCheck(Task):
         }
         del document["next_decade"], document["over_time"]
         return {"found": json.dumps(document, sort_keys=True), "shown": picture_data_of(checked, coarsest).as_text()}
-
-
-def coarsest_enough(checked: CheckResult) -> SettingRun | None:
-    """The setting with the largest step whose error is within the tolerance, or None if no error is."""
-    enough = [setting for setting in checked.table if setting.error <= checked.tolerance]
-    return max(enough, key=lambda setting: setting.change.dt, default=None)
 
 
 def model_check(file: str, name: str = "", **settings: float) -> ModelCheck:
