@@ -8,6 +8,7 @@
 const HARMONICS = 3; // highest frequency of a drawn path, which makes the shapes smooth
 const POINTS = 360; // points of each shape
 const SMALL = 1e-9; // an extent of the path of the centre that counts as zero [m]
+const ROUNDING = 1e-18; // a product of two areas [m^4]: a curve that is traced twice touches itself to rounding and does not cross itself
 
 /** Return the series of a closed path through drawn points, which have equal distances along the path. @param {Point[]} drawn @returns {Series} */
 export function seriesOf(drawn) {
@@ -54,16 +55,29 @@ export const extent = (points) => Math.max(...[0, 1].map((axis) => Math.max(...p
 /** Return whether a closed path crosses itself. @param {Point[]} points */
 export function crosses(points) {
   const side = (/** @type {Point} */ [ax, ay], /** @type {Point} */ [bx, by], /** @type {Point} */ [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-  const apart = (/** @type {number} */ a, /** @type {number} */ b) => side(points[a], points[a + 1], points[b]) * side(points[a], points[a + 1], points[b + 1]) < 0;
+  const apart = (/** @type {number} */ a, /** @type {number} */ b) => side(points[a], points[a + 1], points[b]) * side(points[a], points[a + 1], points[b + 1]) < -ROUNDING;
   const last = points.length - 1;
   for (let a = 0; a < last; a++) for (let b = a + 2; b < last; b++) if (apart(a, b) && apart(b, a)) return true;
   return false;
 }
 
+/** Return the points of one round of a closed curve that may be traced several times. @param {Point[]} points @returns {Point[]} */
+export function once(points) {
+  const rounds = [6, 5, 4, 3, 2].find((parts) => {
+    const length = (points.length - 1) / parts;
+    return Number.isInteger(length) && points.every(([x, y], k) => k < length || Math.hypot(x - points[k - length][0], y - points[k - length][1]) < SMALL);
+  });
+  return points.slice(0, (points.length - 1) / (rounds ?? 1) + 1);
+}
+
+/** Return whether both shapes are curves that do not cross themselves. @param {Shapes} shapes */
+const cuttable = ({ space, body }) => extent(space) > SMALL && !crosses(space) && !crosses(body);
+
 const line = (/** @type {Point[]} */ points) => `M${points.map(([x, y]) => `${x.toFixed(7)} ${y.toFixed(7)}`).join("L")}Z`;
 
 /** Return both shapes as an SVG, side by side at one scale, 1 m of the drawing as 100 mm. @param {Shapes} shapes */
 export function asSvg({ space, body }) {
+  [space, body] = [once(space), once(body)];
   const size = 1.1 * Math.max(extent(space), extent(body));
   const middle = (/** @type {Point[]} */ points) => [0, 1].map((axis) => (Math.max(...points.map((p) => p[axis])) + Math.min(...points.map((p) => p[axis]))) / 2);
   const shape = (/** @type {Point[]} */ points, /** @type {string} */ name, /** @type {number} */ at) =>
@@ -80,7 +94,7 @@ export function asDxf({ space, body }) {
     ...[0, "SEQEND"],
   ];
   const head = [0, "SECTION", 2, "HEADER", 9, "$ACADVER", 1, "AC1009", 9, "$INSUNITS", 70, 6, 0, "ENDSEC", 0, "SECTION", 2, "ENTITIES"];
-  return `${[...head, ...polyline("SPACE", space), ...polyline("BODY", body), 0, "ENDSEC", 0, "EOF"].join("\n")}\n`;
+  return `${[...head, ...polyline("SPACE", once(space)), ...polyline("BODY", once(body)), 0, "ENDSEC", 0, "EOF"].join("\n")}\n`;
 }
 
 /** @type {Record<string, {cosines: Point[], sines: Point[]}>} */
@@ -125,6 +139,14 @@ function begin(place) {
     turnTo();
   }
 
+  /** Take a path; the body turns the other way if only then both shapes can be cut. @param {Series} next */
+  function take(next) {
+    series = next;
+    const turn = clockwise.checked ? -1 : 1;
+    if (!cuttable(shapesOf(series, turn)) && cuttable(shapesOf(series, -turn))) clockwise.checked = turn === 1;
+    make();
+  }
+
   const hand = (/** @type {PointerEvent} */ event) => {
     const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(/** @type {SVGGElement} */ (drawing.firstElementChild).getScreenCTM()?.inverse());
     return /** @type {Point} */ ([x, y]);
@@ -142,14 +164,13 @@ function begin(place) {
     find(".path").setAttribute("d", line(drawn));
   });
   drawing.addEventListener("pointerup", () => {
-    if (extent(drawn) > 0.1) series = seriesOf(drawn);
-    make();
+    if (extent(drawn) > 0.1) take(seriesOf(drawn));
+    else make();
   });
   for (const button of place.querySelectorAll("button")) {
     const { motion, file } = button.dataset;
     button.addEventListener("click", () => {
-      if (motion) series = MOTIONS[motion];
-      if (motion) make();
+      if (motion) take(MOTIONS[motion]);
       if (!file) return;
       const text = file === "svg" ? asSvg(shapes) : asDxf(shapes);
       const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(new Blob([text])), download: `shapes.${file}` });

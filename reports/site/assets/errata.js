@@ -135,10 +135,11 @@ function skate(numbers, term) {
 /** @type {Record<string, [string, number, number]>} label, least and largest value of a number that the reader chooses */
 const SLIDERS = {
   angle: ["angle [rad]", -3, 3], rate: ["turning rate [rad/s]", 0.5, 5], acceleration: ["angular acceleration [rad/s²]", -5, 5],
-  speed: ["speed of the blade [m/s]", 0.1, 3], theta: ["crank angle θ [rad]", 1.6, 12], steps: ["steps of Euler's method in a turn", 20, 2000],
+  speed: ["speed of the blade [m/s]", 0.1, 3], theta: ["crank angle θ [rad]", 1, 13], steps: ["steps of Euler's method in a turn", 20, 2000],
 };
+const rounded = (/** @type {number} */ value) => String(Number(value.toPrecision(3)));
 const written = (/** @type {number[]} */ values) => {
-  const texts = values.map((value) => (Math.abs(value) < 5e-5 ? "0" : value.toFixed(4)));
+  const texts = values.map((value) => (Math.abs(value) < 5e-4 ? "0" : value.toFixed(3)));
   return texts.length > 1 ? `(${texts.join(", ")})` : texts[0];
 };
 
@@ -159,16 +160,17 @@ function begin(place) {
   const known = [...part.querySelectorAll("tbody tr")].flatMap((row) => ERRATA[row.firstElementChild?.textContent ?? ""] ?? []);
   /** @type {Numbers} */
   const chosen = {};
+  part.querySelector(".why")?.append(place); // the tables are there
   const names = Object.keys(SLIDERS).filter((name) => known.some(({ start }) => name in start));
   place.innerHTML = `<div class="controls">${names.map((name) => {
     const [words, least, most] = SLIDERS[name];
     const value = known.find(({ start }) => name in start)?.start[name];
-    return `<label>${words} <input type="range" name="${name}" min="${least}" max="${most}" step="any" value="${value}"> <output></output></label>`;
+    return `<label>${words} <input type="range" name="${name}" min="${least}" max="${most}" step="any" value="${value}"> <output>${rounded(Number(value))}</output></label>`;
   }).join("")}</div>`;
   for (const input of place.querySelectorAll("input")) {
     input.addEventListener("input", () => {
       chosen[input.name] = Number(input.value);
-      /** @type {HTMLElement} */ (input.nextElementSibling).textContent = String(Number(Number(input.value).toPrecision(3)));
+      /** @type {HTMLElement} */ (input.nextElementSibling).textContent = rounded(Number(input.value));
       fill(part, chosen);
     });
   }

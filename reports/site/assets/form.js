@@ -117,7 +117,7 @@ export class Form {
       if (number.hasPointerCapture(event.pointerId)) to(begin + Math.round((event.clientX - from) / 25));
     });
     number.addEventListener("keydown", (event) => {
-      const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+      const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, Home: -1000, End: 1000 }[event.key];
       if (!by) return;
       event.preventDefault();
       to(this.place(number.dataset.name ?? "") + by);

@@ -33,6 +33,8 @@ let shown = null;
 /** @type {number[]|null} the poses at which the reader released the mechanism */
 let start = null;
 let startScene = -1; // the scene of these poses
+/** @type {WeakMap<Element, Record<string, number>>} the positions of sliders that the reader's answer to an experiment runs */
+const answered = new WeakMap();
 /** @type {{setting: Setting, play: boolean, ways: Record<string, string>}|null} the last
  * request that waits for a run to end, with the label of each engine's method */
 let waiting = null;
@@ -209,6 +211,7 @@ async function guessed(part, button) {
   if (proposed) runs.push({ label: `your answer: ${button.textContent}`, places: own });
   runs.push({ label: proposed ? `the right answer: ${part.querySelector("[data-right]")?.textContent}` : "now", places: after });
   load();
+  answered.set(part, runs[1].places);
   const answers = [];
   for (const { places } of runs) {
     select(part, places);
@@ -321,7 +324,7 @@ function begin() {
   const looking = new IntersectionObserver((entries) => {
     const near = entries.filter(({ target, isIntersecting }) => isIntersecting && !target.classList.contains("shown"));
     for (const { target } of scrolled ? near : []) {
-      if (target instanceof HTMLElement && !target.querySelector(".answers .chosen")) stageOf(target, {}, true);
+      if (target instanceof HTMLElement) stageOf(target, answered.get(target) ?? {}, true);
     }
   }, { rootMargin: matchMedia("(max-width: 52rem)").matches ? "-45% 0px -50% 0px" : "-25% 0px -70% 0px" });
   for (const part of parts) looking.observe(part);

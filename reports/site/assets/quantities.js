@@ -49,7 +49,7 @@ export function measured({ kind, bodies }, run, states) {
     }
     case "friction": {
       const ratios = run.forces?.flatMap(({ friction }) => friction ?? []) ?? [];
-      return states === exact && ratios.length ? [ratios.reduce((most, ratio) => Math.max(/** @type {number} */ (most), ratio ?? Infinity), 0)] : null;
+      return states === exact && ratios.length ? [Math.max(...ratios.map((ratio) => ratio ?? Infinity))] : null;
     }
     case "contact": {
       const at = run.forces?.find(({ contact }) => contact)?.at;
