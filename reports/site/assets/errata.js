@@ -165,7 +165,7 @@ function begin(place) {
   place.innerHTML = `<div class="controls">${names.map((name) => {
     const [words, least, most] = SLIDERS[name];
     const value = known.find(({ start }) => name in start)?.start[name];
-    return `<label>${words} <input type="range" name="${name}" min="${least}" max="${most}" step="any" value="${value}"> <output>${rounded(Number(value))}</output></label>`;
+    return `<label class="time">${words} <input type="range" name="${name}" min="${least}" max="${most}" step="any" value="${value}"> <output>${rounded(Number(value))}</output></label>`;
   }).join("")}</div>`;
   for (const input of place.querySelectorAll("input")) {
     input.addEventListener("input", () => {
