@@ -254,12 +254,10 @@ def measure_errors(mechanism: Mechanism, truth: Trajectory, run: Trajectory, jum
 
 
 def _reaction(mechanism: Mechanism, truth: Trajectory, run: Trajectory) -> Array:
-    """The largest relative error (times,) of the unique joint reactions, or NaN if the run has no reactions.
-
-    Force errors are relative to the largest ideal force, and moment errors to the largest ideal moment. If all ideal
-    forces or moments are only rounding, errors are relative to the largest acting force, or for moments to this force
-    times the length. The force of a joint is compared as a vector, so the error does not depend on the axes.
-    """
+    """The largest relative error (times,) of the unique joint reactions, or NaN if the run has no reactions. Force
+    errors are relative to the largest ideal force, and moment errors to the largest ideal moment. If all ideal forces
+    or moments are only rounding, errors are relative to the largest acting force, or for moments to this force times
+    the length. The force of a joint is compared as a vector, so the error does not depend on the axes."""
     out = np.full(len(run.t), np.nan)
     if not mechanism.row_count:
         return out

@@ -42,12 +42,10 @@ def bench(
     site: Annotated[Path, typer.Option(help="`site`: a folder that `crosscheck site` wrote.")] = SITE,
     device: DeviceName = None,
 ) -> None:
-    """Compare the CPU times of `run` and of bare loops.
-
-    `bench suite [SCENES]` measures the CPU time of a grid by part, method and scene. `bench judge` measures the judge
-    and exact motions. `bench worlds [COUNTS]` measures steps per second and errors of many four-bars in one program, on
-    the device of `--device`. `bench answers` measures whole commands. `bench site` measures the site.
-    """
+    """Compare the CPU times of `run` and of bare loops. `bench suite [SCENES]` measures the CPU time of a grid by part,
+    method and scene. `bench judge` measures the judge and exact motions. `bench worlds [COUNTS]` measures steps per
+    second and errors of many four-bars in one program, on the device of `--device`. `bench answers` measures whole
+    commands. `bench site` measures the site."""
     match scene or []:
         case ["suite", *scenes]:
             _print_grid(scenes, full)

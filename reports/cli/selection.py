@@ -161,12 +161,10 @@ def choose_tasks(
 
 
 def _quick(cells: Sequence[Cell], named: bool) -> tuple[Cell, ...]:
-    """The cells of a quick run are all short cells, and each method's shortest cell if it takes at most QUICK_CELL.
-
-    For an engine outside the grid only the longest of the short cells is run. The shortest cell of an engine that the
-    user has `named` is always run. Times are estimated by the engines'
-    formulas, so the choice does not depend on the machine.
-    """
+    """The cells of a quick run are all short cells, and each method's shortest cell if it takes at most QUICK_CELL. For
+    an engine outside the grid only the longest of the short cells is run. The shortest cell of an engine that the user
+    has `named` is always run. Times are estimated by the engines' formulas, so the choice does not depend on the
+    machine."""
     groups: dict[tuple[Scene, Engine, str], list[Cell]] = {}
     for cell in cells:
         groups.setdefault((cell.scene, cell.engine, cell.purpose), []).append(cell)

@@ -83,12 +83,10 @@ def opened(path: Path) -> Iterator[Store]:
 
 @contextmanager
 def telling(width: int, as_json: bool, as_markdown: bool) -> Iterator[Terminal]:
-    """A terminal with the form that the options select. Raises BadInput for both options at once.
-
-    The JSON document is printed at the end, but not after invalid input. The document has `tables`, `sentences`, the
-    exit `status`, and `message`. A table has a `title` and `rows`. A row is an object with column names as keys, in
-    which an unknown number is null.
-    """
+    """A terminal with the form that the options select. Raises BadInput for both options at once. The JSON document is
+    printed at the end, but not after invalid input. The document has `tables`, `sentences`, the exit `status`, and
+    `message`. A table has a `title` and `rows`. A row is an object with column names as keys, in which an unknown
+    number is null."""
     if as_json and as_markdown:
         raise BadInput("--json and --markdown are two forms of one output; give one of them")
     terminal = Terminal(width, "json" if as_json else "markdown" if as_markdown else "text")

@@ -279,11 +279,9 @@ def describe_improvements(row: Measurement, old: Old) -> tuple[str, ...]:
 
 def growth(pairs: Iterable[tuple[Measurement, Old]]) -> tuple[Check, ...]:
     """Checks, for each method and quantity, that the errors of all scenes together have not grown with other versions.
-
     In one scene an error may change by a factor of WORSE by chance. The median factor of n scenes varies less, so its
     bound is WORSE ** (SCATTER / sqrt(n)). The cells of a scene are not independent, so each scene contributes the
-    median of its factors. Errors below rounding have the factor 1.
-    """
+    median of its factors. Errors below rounding have the factor 1."""
     factors: dict[tuple[str, str], dict[str, list[float]]] = {}
     for row, old in pairs:
         if not (Outcome(row.outcome).comparable and old.outcome.comparable):

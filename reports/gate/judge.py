@@ -107,12 +107,10 @@ def _machine(mechanism: Mechanism, soft: Regularisation | None) -> CompiledModel
 
 
 def refined(mechanism: Mechanism, samples: int, spacing: float, soft: Regularisation) -> Trajectory | None:
-    """A regularised motion at samples `spacing` [s] apart, computed by the method of order 4 with step control.
-
-    The time between two samples is divided into PARTS intervals. An interval is repeated with a third of the step until
-    the result changes by less than SAME, relative to the mechanism's length and speed. So the integration passes
-    singular positions, where spring forces are large. Returns None without numba, and after MOST_TRIED steps.
-    """
+    """A regularised motion at samples `spacing` [s] apart, computed by the method of order 4 with step control. The
+    time between two samples is divided into PARTS intervals. An interval is repeated with a third of the step until the
+    result changes by less than SAME, relative to the mechanism's length and speed. So the integration passes singular
+    positions, where spring forces are large. Returns None without numba, and after MOST_TRIED steps."""
     machine = _machine(mechanism, soft)
     if machine is None:
         return None

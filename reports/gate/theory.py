@@ -36,12 +36,10 @@ TOO_FEW = "fewer than three steps have an error above rounding and below a tenth
 
 
 def order(promise: ConvergenceOrder | NotDeclared, rows: Sequence[Measurement]) -> tuple[Check, ...]:
-    """The check of the observed convergence order. There is no check without a declared order.
-
-    The measured value is the difference to the declared order divided by the allowed difference. An error that levels
-    off, grows or is erratic has the order 0. With fewer than three usable points the bound is infinite, and the
-    sentence of the check gives the reason.
-    """
+    """The check of the observed convergence order. There is no check without a declared order. The measured value is
+    the difference to the declared order divided by the allowed difference. An error that levels off, grows or is
+    erratic has the order 0. With fewer than three usable points the bound is infinite, and the sentence of the check
+    gives the reason."""
     if isinstance(promise, NotDeclared) or promise.order == EXACT:
         return ()
     usable = [row for row in rows if Outcome(row.outcome).comparable and row.angle <= PROPORTIONAL]

@@ -41,12 +41,10 @@ def constraint_errors(mechanism: Mechanism, trajectory: Trajectory) -> dict[str,
 
 
 def motion_errors(scene: Scene, mechanism: Mechanism, truth: Trajectory, trajectory: Trajectory) -> dict[str, float]:
-    """Errors within the scene's horizon, and `angle_duration` over the whole duration.
-
-    The errors of position [m], angle [rad], velocity [m/s] and rate [rad/s] are maxima over samples and bodies.
-    Names with `_rms` are root mean squares. The energy error is relative to the largest exact kinetic energy. So the
-    energy error is also defined for a driven motion and does not depend on the reference height.
-    """
+    """Errors within the scene's horizon, and `angle_duration` over the whole duration. The errors of position [m],
+    angle [rad], velocity [m/s] and rate [rad/s] are maxima over samples and bodies. Names with `_rms` are root mean
+    squares. The energy error is relative to the largest exact kinetic energy. So the energy error is also defined for a
+    driven motion and does not depend on the reference height."""
     within = trajectory.t <= scene.horizon * (1 + 1e-12)
     pose, twist = trajectory.pose - truth.pose, trajectory.twist - truth.twist
     distance, speed = np.hypot(pose[..., 0], pose[..., 1]), np.hypot(twist[..., 0], twist[..., 1])

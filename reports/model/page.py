@@ -31,12 +31,10 @@ class Observation:
 
 @dataclass(frozen=True)
 class Failure:
-    """An experiment in which methods are expected to fail.
-
-    `expected` and `remark` are templates with the variables of `context`. In a remark, `at(method, step)` is the row
-    with the nearest step [s], and `count(outcome)` is the number of rows with this outcome. `count()` is the number of
-    all rows. A clause within `if_measured` is left out if one of its numbers is missing.
-    """
+    """An experiment in which methods are expected to fail. `expected` and `remark` are templates with the variables of
+    `context`. In a remark, `at(method, step)` is the row with the nearest step [s], and `count(outcome)` is the number
+    of rows with this outcome. `count()` is the number of all rows. A clause within `if_measured` is left out if one of
+    its numbers is missing."""
 
     title: str
     expected: str = ""  # The behaviour according to the reference.

@@ -75,12 +75,10 @@ def printed(value: float) -> float:
 
 
 def rounding_tolerance(name: str, before: float, amplified: float = 1.0) -> tuple[float, float]:
-    """Two terms of the allowed difference between processors: (one unit of the last printed digit, rounding).
-
-    name: a field of Measurement that is an error, a root mean square or an estimate. amplified: factor by which the
-    method amplifies rounding (`engines.ConvergenceOrder`). `reports.gate.change` measures the amplification by the
-    motion. Raises KeyError for any other field.
-    """
+    """Two terms of the allowed difference between processors: (one unit of the last printed digit, rounding). name: a
+    field of Measurement that is an error, a root mean square or an estimate. amplified: factor by which the method
+    amplifies rounding (`engines.ConvergenceOrder`). `reports.gate.change` measures the amplification by the motion.
+    Raises KeyError for any other field."""
     return printed(before), quantity(OF.get(name, name)).rounding * amplified
 
 

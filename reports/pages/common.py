@@ -65,12 +65,10 @@ def to_rounding(
 
 
 def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:
-    """The experiments with their texts from `experiments.md` in the folder of the file `source`.
-
-    A section consists of the experiment's title, a paragraph with the expectation, optional paragraphs with the lesson,
-    and an optional list of claims (`reports.pages.claims`). All texts are templates with `values` and the experiment's
-    context. Raises ValueError unless the sections have the titles of the experiments, in the same order.
-    """
+    """The experiments with their texts from `experiments.md` in the folder of the file `source`. A section consists of
+    the experiment's title, a paragraph with the expectation, optional paragraphs with the lesson, and an optional list
+    of claims (`reports.pages.claims`). All texts are templates with `values` and the experiment's context. Raises
+    ValueError unless the sections have the titles of the experiments, in the same order."""
     text = Path(source).with_name("experiments.md").read_text(encoding="utf-8")
     sections = {}
     for section in text.removeprefix("## ").split("\n## "):

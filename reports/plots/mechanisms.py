@@ -104,13 +104,9 @@ BLOCK_SIZE = 0.045  # side of the square that shows a body with one joint point,
 
 @dataclass(frozen=True)
 class Strip:
-    """One panel: A panel with `count` poses of a scene's reference motion from `start` to `end` [s].
-
-    ends: points of bodies without a joint, such as a free end, in the body's frame [m].
-    spread: shift to the right between successive poses [m].
-    trace: a body and one of its points, whose path is drawn.
-    floor: whether a line at y = 0 is drawn.
-    """
+    """One panel: A panel with `count` poses of a scene's reference motion from `start` to `end` [s]. ends: points of
+    bodies without a joint, such as a free end, in the body's frame [m]. spread: shift to the right between successive
+    poses [m]. trace: a body and one of its points, whose path is drawn. floor: whether a line at y = 0 is drawn."""
 
     scene: Scene
     title: str

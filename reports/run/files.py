@@ -71,12 +71,10 @@ def folder_for(path: Path, remedy: str) -> Path:
 
 
 def write_whole(texts: Mapping[Path, str], remedy: str) -> None:
-    """Write all files or no file. Symbolic links are replaced by files.
-
-    The files are first written under temporary names, so an error, such as a full disk, changes no old file. If the
-    process is killed while files are renamed, old and new files remain, and all are complete. Devices and pipes such as
-    /dev/stdout are written last. Raises FileTrouble with a message that ends in `remedy`.
-    """
+    """Write all files or no file. Symbolic links are replaced by files. The files are first written under temporary
+    names, so an error, such as a full disk, changes no old file. If the process is killed while files are renamed, old
+    and new files remain, and all are complete. Devices and pipes such as /dev/stdout are written last. Raises
+    FileTrouble with a message that ends in `remedy`."""
     path = Path()
     try:
         with ExitStack() as stack:

@@ -53,12 +53,10 @@ def run_items(
     supervised: Supervise = supervise,
     truths: Path | None = None,
 ) -> Iterator[tuple[Item, Any]]:
-    """Yield (cell, Measurement) and (task, Answer). Items start in the order of `longest_first`.
-
-    A lost item has an outcome and no numbers. `supervise` describes `limit`, `wall` and WorkersLost. workers: by
-    default `worker_count()`. timed: whether a cell is repeated to measure the smallest CPU time. supervised: the
-    function that runs the items. truths: a folder of exact motions that workers share.
-    """
+    """Yield (cell, Measurement) and (task, Answer). Items start in the order of `longest_first`. A lost item has an
+    outcome and no numbers. `supervise` describes `limit`, `wall` and WorkersLost. workers: by default `worker_count()`.
+    timed: whether a cell is repeated to measure the smallest CPU time. supervised: the function that runs the items.
+    truths: a folder of exact motions that workers share."""
     items = tuple(items)
     for item in items:  # The keys are cached, since every worker would need half a second to read all sources.
         _ = item.key, isinstance(item, Cell) and item.truth

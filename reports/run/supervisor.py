@@ -71,11 +71,9 @@ def supervise(
     wall: float | None = None,
 ) -> Iterator[Answer]:
     """Yield (item, result or Loss, note) in the order of completion. The note says how a first try has aborted.
-
     `function` must be importable. limit: CPU seconds of all threads for an item. wall: seconds for an item that sleeps,
     by default ten times `limit` and a minute. `watch` is called a few times a second with the running items. Raises
-    WorkersLost if no worker can be started. The workers end when the iterator is closed.
-    """
+    WorkersLost if no worker can be started. The workers end when the iterator is closed."""
     one_thread_each()
     with temporary_folder() as folder:
         wall = 10 * limit + 60 if wall is None else wall  # The machine may be overloaded ten times.

@@ -192,12 +192,10 @@ class CpuDeadline:
 
 
 def work(connection: Connection, folder: str, limit: float, wall: float) -> None:
-    """Answer jobs until the connection is closed, or until a job has changed the state of the process.
-
-    A job is a pickled (function, item). The answer is a pickled (whether this worker accepts another job, the pickled
-    result or Loss). limit: CPU seconds of one job. wall: seconds after which the parent ends the job. After twice this
-    time the worker ends itself, since the parent must have ended.
-    """
+    """Answer jobs until the connection is closed, or until a job has changed the state of the process. A job is a
+    pickled (function, item). The answer is a pickled (whether this worker accepts another job, the pickled result or
+    Loss). limit: CPU seconds of one job. wall: seconds after which the parent ends the job. After twice this time the
+    worker ends itself, since the parent must have ended."""
     # Ctrl-C reaches all processes of a terminal, but only the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):

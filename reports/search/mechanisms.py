@@ -65,12 +65,10 @@ def mechanism(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, de
 
 @validated
 def recipe(seed: Seed, number: Seed, kinds: tuple[str, ...] = FIRST_KINDS, decades: Decades = 0) -> Recipe:
-    """Case `number` of a seed, with joints and forces of these `kinds`. The order of `kinds` has no effect.
-
-    Masses are from 0.1 to 10 kg, and lengths from 0.1 m to some metres. `decades` is the number of powers of ten by
-    which both ranges are extended at both ends. The units of length, mass and time change by up to the same number of
-    powers. Raises InvalidMechanism for unknown kinds or for no kinds.
-    """
+    """Case `number` of a seed, with joints and forces of these `kinds`. The order of `kinds` has no effect. Masses are
+    from 0.1 to 10 kg, and lengths from 0.1 m to some metres. `decades` is the number of powers of ten by which both
+    ranges are extended at both ends. The units of length, mass and time change by up to the same number of powers.
+    Raises InvalidMechanism for unknown kinds or for no kinds."""
     if not kinds or not {*kinds} <= {*ALL_KINDS, *SINGULAR_KINDS}:
         raise InvalidMechanism(f"recipe: kinds is {kinds!r}; give one or some of {', '.join(ALL_KINDS)}")
     draw = _Draw([seed, number, decades], kinds, decades)

@@ -218,13 +218,10 @@ def _slips(model: RawModel, q: Numbers, v: Numbers) -> list[Numbers]:
 
 @dataclass(frozen=True, eq=False)
 class StartEquations:
-    """The equations of motion of a model at the start.
-
-    `root` (coordinates, coordinates): a root S of the mass matrix S^T S. `free`: the product of S and the accelerations
-    without equalities. `rows`: the Jacobian J of each equality. `right`: the product of J and the accelerations.
-    `bent`: the part of `right` that comes from the curve of an equality. `rates` (coordinates,): velocities that
-    satisfy the equalities.
-    """
+    """The equations of motion of a model at the start. `root` (coordinates, coordinates): a root S of the mass matrix
+    S^T S. `free`: the product of S and the accelerations without equalities. `rows`: the Jacobian J of each equality.
+    `right`: the product of J and the accelerations. `bent`: the part of `right` that comes from the curve of an
+    equality. `rates` (coordinates,): velocities that satisfy the equalities."""
 
     root: Array
     free: Array

@@ -28,12 +28,10 @@ RATE_UNIT = Decimal("0.5")  # m/s and rad/s.
 
 @dataclass(frozen=True)
 class RecipeBody:
-    """A body of a recipe, described by integers.
-
-    `parent`: number of an earlier body, or 0 for the ground. `offset`: position relative to the parent, in tenths of
-    `size`. `angle` is in steps of 0.3 rad. `velocity` is in steps of 0.5 m/s and 0.5 rad/s. `size`, `mass` and
-    `gyration` are steps of `ladder`. `gyration` is the radius of gyration relative to the size.
-    """
+    """A body of a recipe, described by integers. `parent`: number of an earlier body, or 0 for the ground. `offset`:
+    position relative to the parent, in tenths of `size`. `angle` is in steps of 0.3 rad. `velocity` is in steps of 0.5
+    m/s and 0.5 rad/s. `size`, `mass` and `gyration` are steps of `ladder`. `gyration` is the radius of gyration
+    relative to the size."""
 
     parent: int = 0
     offset: tuple[int, int] = (0, 0)

@@ -32,11 +32,9 @@ CURVED, BESIDE_CURVED = "acceleration, a known fault", "beside the known fault"
 
 def check_accelerations(model: RawModel, version: str = "") -> dict[str, Any]:
     """The values are relative "errors" by check, the accelerations "found" and "expected", and the "version".
-
-    BESIDE_CURVED is the smaller of the errors with and without the velocity term of curved equalities.
-    `version`: a release such as "3.6.0", or "" for the installed release. Raises Fault if the other release raises an
-    exception or crashes.
-    """
+    BESIDE_CURVED is the smaller of the errors with and without the velocity term of curved equalities. `version`: a
+    release such as "3.6.0", or "" for the installed release. Raises Fault if the other release raises an exception or
+    crashes."""
     if version:
         return _check_in_other_release(version, case_to_json(model))
     import mujoco

@@ -76,12 +76,10 @@ def compare_builds(
     progress: Progress = no_progress,
     announce: Callable[[str], None] = lambda word: None,
 ) -> BuildComparison:
-    """Run scenes in two builds and compare the rows. A build is NAME==VERSION, a wheel, or a folder.
-
-    engine: a name or a reference, by default the engine that needs the packages of the builds. scenes: by default
-    SCENES. results: folder of the store for rows of released versions. `announce` is called with the name of each build
-    before pip runs. Raises BadInput.
-    """
+    """Run scenes in two builds and compare the rows. A build is NAME==VERSION, a wheel, or a folder. engine: a name or
+    a reference, by default the engine that needs the packages of the builds. scenes: by default SCENES. results: folder
+    of the store for rows of released versions. `announce` is called with the name of each build before pip runs. Raises
+    BadInput."""
     engines = (*VARIANTS, *OTHERS) if engine is None else engines_named(engine)
     a, b = (side_of(word, engine, engines, announce) for word in (first, second))
     if a.engine != b.engine:

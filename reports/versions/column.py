@@ -72,12 +72,10 @@ def column(
     watch: Watch = lambda labels: None,
     done: Callable[[Measurement], None] = lambda row: None,
 ) -> VersionColumn:
-    """Run a version. If the process of the version fails, the rows report this.
-
-    engines: engines of this process, which are needed for the rows of a version that can't be used. `watch` is called a
-    few times a second with the labels of running cells. If `watch` raises, the process is ended, and the stored rows
-    remain. `done` is called with each row. Raises BadInput if the code and the metadata have different version numbers.
-    """
+    """Run a version. If the process of the version fails, the rows report this. engines: engines of this process, which
+    are needed for the rows of a version that can't be used. `watch` is called a few times a second with the labels of
+    running cells. If `watch` raises, the process is ended, and the stored rows remain. `done` is called with each row.
+    Raises BadInput if the code and the metadata have different version numbers."""
     rows: list[Measurement] = []
     trees: list[tuple[Trees, Answer]] = []
     loss = None

@@ -140,12 +140,10 @@ def measured_across(offset: float) -> float:
 
 
 def predicted_across(offset: Any) -> Any:
-    """The result of `measured_across` that follows from cpGrooveJoint's wrong formula for the impulse.
-
-    The formula is n (n.K^-1 v) instead of n (n.v) / (n.K n). Here n = (0, 1) is the normal, and v = (1, 0) is the
-    relative velocity of the anchors. For a pin at the anchors, K = J M^-1 J^T = [[1 + q, -q], [-q, 1 + q]] with q =
-    offset^2 / 2. The impulse is then -q / (1 + 2 q).
-    """
+    """The result of `measured_across` that follows from cpGrooveJoint's wrong formula for the impulse. The formula is n
+    (n.K^-1 v) instead of n (n.v) / (n.K n). Here n = (0, 1) is the normal, and v = (1, 0) is the relative velocity of
+    the anchors. For a pin at the anchors, K = J M^-1 J^T = [[1 + q, -q], [-q, 1 + q]] with q = offset^2 / 2. The
+    impulse is then -q / (1 + 2 q)."""
     square = offset**2 / 2
     return -square / (1 + 2 * square) * (1 + square)
 

@@ -68,10 +68,7 @@ RING_METHODS = (mujoco.DEFAULT, mujoco.TUNED, mujoco.EXTENDED, pymunk.TUNED)
 HEAVY_TIP_METHODS = (*MAIN_METHODS, sweeps(10), sweeps(1000), PENDULUM_SPARSE_NEWTON)
 
 
-def tip(ratio: float) -> LinkPendulum:
-    """A chain of three links for 1 s. The last link has `ratio` times the mass of another link."""
-    return LinkPendulum(links=3, tip=ratio, duration=1.0, horizon=1.0)
-
+HEAVY_TIP = LinkPendulum(links=3, tip=1e4, duration=1.0, horizon=1.0)
 
 # Extrapolated variants are run at the largest step only, since they fail at each step.
 PHASE = cells(PointPendulum(), PUBLIC, (10, 50, 150)) + cells(
@@ -158,8 +155,8 @@ PAGE = scene_page(
         Failure(
             "A light chain with a heavy tip",
             # "pymunk extended" is run at the largest step only, because it takes minutes at the smallest step.
-            cells=cells(tip(1e4), [engine for engine in HEAVY_TIP_METHODS if engine != pymunk.EXTENDED], (1, 10, 100))
-            + cells(tip(1e4), (pymunk.EXTENDED,), (1,)),
+            cells=cells(HEAVY_TIP, [engine for engine in HEAVY_TIP_METHODS if engine != pymunk.EXTENDED], (1, 10, 100))
+            + cells(HEAVY_TIP, (pymunk.EXTENDED,), (1,)),
         ),
         Failure("A ring of a hundred links, closed by one joint", cells=cells(SpinningRing(), RING_METHODS, (1, 10))),
         Failure(
@@ -172,7 +169,7 @@ PAGE = scene_page(
         Failure("A hundred links at large steps", cells=LARGE_STEPS, context=opened_joints),
         period=f"{PERIOD:.7f}",
         swings=f"{PointPendulum().duration / PERIOD:.1f}",
-        oscillates=number(stiffest_hanging(tip(1e4))),
+        oscillates=number(stiffest_hanging(HEAVY_TIP)),
     ),
     featured=lambda row: row.variant in FEATURED_VARIANTS,
     figures=figures,

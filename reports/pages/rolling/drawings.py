@@ -25,13 +25,9 @@ POINTS_PER_CURVE = 241
 
 @dataclass(frozen=True)
 class Roulette:
-    """A rolling body and the path of one of its points.
-
-    point: coordinates in the body's frame [m].
-    path: rotations [rad] of the body at the ends of the path.
-    shown: rotations [rad] at which the body is drawn.
-    ground, body: arcs [m] between which the curves are drawn, or None for the whole body.
-    """
+    """A rolling body and the path of one of its points. point: coordinates in the body's frame [m]. path: rotations
+    [rad] of the body at the ends of the path. shown: rotations [rad] at which the body is drawn. ground, body: arcs [m]
+    between which the curves are drawn, or None for the whole body."""
 
     title: str
     rolling: Rolling

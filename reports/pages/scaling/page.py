@@ -91,10 +91,10 @@ def series_of(rows: Mapping[Cell, Measurement], timed: float) -> tuple[MethodSer
     )
 
 
-def exponent(sizes: Iterable[float], values: Iterable[float], last: int = FIT_POINTS) -> tuple[float, int, int]:
-    """The slope of log value over log size for the `last` finite points, and the smallest and largest size of the fit.
-    With fewer than two points the result is (NaN, 0, 0)."""
-    pairs = [(n, v) for n, v in zip(sizes, values, strict=True) if math.isfinite(v) and v > 0][-last:]
+def exponent(sizes: Iterable[float], values: Iterable[float]) -> tuple[float, int, int]:
+    """The slope of log value over log size for the last FIT_POINTS finite points, and the fit's smallest and largest
+    size. With fewer than two points the result is (NaN, 0, 0)."""
+    pairs = [(n, v) for n, v in zip(sizes, values, strict=True) if math.isfinite(v) and v > 0][-FIT_POINTS:]
     if len(pairs) < 2:
         return math.nan, 0, 0
     n, v = np.log(np.array(pairs, dtype=float)).T
@@ -169,12 +169,7 @@ FREE_DEFAULT = replace(mujoco.DEFAULT, variant="default, free coordinates", coor
 # Error estimates are switched off, because their runs would increase the CPU time of a step.
 PLAIN = replace(mujoco.EXTENDED, coordinates="free", estimates=False)
 SCALING_SPARSE_NEWTON = replace(
-    PLAIN,
-    variant="extended, free, sparse Newton, no estimate",
-    solvers=("Newton",),
-    iterations=5,
-    tolerance=1e-20,
-    jacobian="sparse",
+    pendulum.PENDULUM_SPARSE_NEWTON, variant="extended, free, sparse Newton, no estimate", estimates=False
 )
 PGS = replace(PLAIN, variant="extended, free, PGS sweeps, no estimate", solvers=("PGS",))
 EULER, RUNGE_KUTTA = Lagrange("euler", "projection"), Lagrange("rk4", "projection")

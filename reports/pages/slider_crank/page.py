@@ -50,17 +50,17 @@ class Leaving(Task):
         return {"when": np.asarray(t[int(np.argmax(has_left))] if has_left.any() else np.nan)}
 
 
-GROOVE_AT_ROD = (
-    replace(pymunk.DEFAULT, variant="default, GrooveJoint at the rod's end", slot="groove"),
-    replace(pymunk.TUNED, variant="tuned, GrooveJoint at the rod's end", slot="groove"),
+GROOVES, LEVERS = (
+    cells(
+        scene,
+        [
+            replace(engine, variant=f"{engine.variant}, GrooveJoint {place}", slot="groove")
+            for engine in (pymunk.DEFAULT, pymunk.TUNED)
+        ],
+        (1, 10, 100),
+    )
+    for scene, place in ((RodEndInSlot(), "at the rod's end"), (SlottedLever(), "in the lever"))
 )
-GROOVES = cells(RodEndInSlot(), GROOVE_AT_ROD, (1, 10, 100))
-GROOVE_IN_LEVER = (
-    replace(pymunk.DEFAULT, variant="default, GrooveJoint in the lever", slot="groove"),
-    replace(pymunk.TUNED, variant="tuned, GrooveJoint in the lever", slot="groove"),
-)
-LEVERS = cells(SlottedLever(), GROOVE_IN_LEVER, (1, 10, 100))
-
 LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 
