@@ -145,13 +145,6 @@ def out_of_time(limit: float, wall: float | None = None) -> Loss:
     return Loss(Outcome.TIMED_OUT, f"did not end within {wall:g} s, and used less than {limit:g} s of CPU time")
 
 
-def second_crash(code: int | None, words: str, earlier: str) -> Loss:
-    """The result of a cell whose process ended twice. code, words: exit code and description of the second process."""
-    if from_outside(code):
-        return Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {earlier}")
-    return Loss(Outcome.ABORTED, words)
-
-
 def of_motion(row: Measurement, mechanism: Mechanism, trajectory: Trajectory, count: int) -> tuple[Outcome, str]:
     """(the gravest outcome that applies, a sentence with the reason). count: number of finite samples."""
     length = mechanism.length_scale

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.model.ending import Broken, describe
-from reports.model.outcomes import Loss, Outcome, describe_exit, failure, from_outside, out_of_time, second_crash
+from reports.model.outcomes import Loss, Outcome, describe_exit, failure, from_outside, out_of_time
 from reports.run.files import temporary_folder
 from reports.run.worker import (
     READY,
@@ -191,8 +191,10 @@ class Pool:
             yield job.item, out_of_time(limit), ""
         elif not job.earlier:
             self._retries.append(Job(job.item, words, from_outside(code)))
+        elif from_outside(code):
+            yield job.item, Loss(Outcome.LOST, f"{words}, perhaps for want of memory; before that: {job.earlier}"), ""
         else:
-            yield job.item, second_crash(code, words, job.earlier), ""
+            yield job.item, Loss(Outcome.ABORTED, words), ""
 
     def _end_overdue(self, worker: Worker) -> Iterator[Answer]:
         _, limit, wall = self._terms

@@ -21,6 +21,7 @@ from reports.run.installed import numbers
 from reports.versions.catalogue import compared_versions
 from reports.versions.column import VersionColumn
 from reports.versions.trees import Trees
+from reports.write.csv_files import read_lines
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
@@ -137,10 +138,9 @@ def read(path: Path) -> ReleaseTable:
     """Read the output of `as_csv`. If the file does not exist, the table is empty. Raises ValueError."""
     if not path.is_file():
         return ReleaseTable((), {})
-    lines = path.read_text(encoding="utf-8").splitlines()
-    heads = [line[2:].partition(": ") for line in lines if line.startswith("# ")]
+    comments, rows = read_lines(path.read_text(encoding="utf-8"))
+    heads = [comment.partition(": ") for comment in comments]
     marks = {(name.split(" ")[0], name.split(" ")[-1]): mark for name, _, mark in heads}
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
     types: dict[str, Any] = {field.name: float if field.type == "float" else str for field in fields(Entry)}
     try:
         rows_read = tuple(Entry(**{name: kind(row[name]) for name, kind in types.items()}) for row in rows)

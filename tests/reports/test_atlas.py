@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
-from matplotlib.patches import PathPatch
 
 from engines import Regularisation, method_name
 from engines.registry import VARIANTS
@@ -18,16 +16,11 @@ from reference.mechanism import Mechanism
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.model.ending import FINE, REFUSED
-from reports.model.outcomes import TORN, Outcome
-from reports.model.page import Material
+from reports.model.outcomes import TORN
 from reports.pages.atlas import columns as map_columns
 from reports.pages.atlas import page, subjects
 from reports.pages.atlas.columns import FILE, NOT_RUN, MapColumn, StoredColumn
-from reports.pages.atlas.page import atlas_map, edges
 from reports.pages.atlas.subjects import MAPS, StabilityMap
-from reports.pages.rendering import render_page
-from reports.plots.looks import outcome_colour
-from reports.plots.theme import LIGHT
 from reports.run.running import run_items
 from tests.reports.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, Toy
@@ -147,26 +140,6 @@ def test_a_stored_column_has_errors_of_finished_runs_and_an_abort_affects_its_ow
     assert all(math.isnan(error) for error in lines[1].errors)
 
 
-LINES = (
-    line(1.0, "·S·T", gives=0.01, left=0.2),
-    line(10.0, "TTS·", gives=0.03, left=0.7),
-    line(100.0, "TTTR", "other", gives=math.inf),
-)
-
-
-def test_each_cell_is_painted_in_the_colour_of_its_region():
-    figure = atlas_map(TOYS, LINES[:2])
-    [panel] = [axes for axes in figure.axes if axes.get_visible()]
-    across, up = edges([1.0, 10.0], False), edges([0.0125, 0.025, 0.05, 0.1], False)
-    painted = [patch for patch in panel.patches if isinstance(patch, PathPatch) and patch.get_fill()]
-    for column, map_line in enumerate(LINES[:2]):
-        for row, end in enumerate(page.regions_of_steps(map_line)[::-1]):
-            middle = math.sqrt(across[column] * across[column + 1]), math.sqrt(up[row] * up[row + 1])
-            colours = [to_hex(p.get_facecolor()) for p in painted if p.get_path().contains_point(middle)]
-            assert colours[0] == (outcome_colour(end) if isinstance(end, Outcome) else getattr(LIGHT, end))
-    assert edges([1.0, 2.0, 3.0], True).tolist() == [0.5, 1.5, 2.5, 3.5]
-
-
 def test_at_the_largest_step_and_below_all_errors_are_within_the_bound():
     inf = float("inf")
     assert page.largest_step([line(1.0, "·S··"), line(2.0, "TTS·")], inf) == "12 ms"
@@ -179,24 +152,6 @@ def test_at_the_largest_step_and_below_all_errors_are_within_the_bound():
     assert page.agreement(
         [line(1.0, "TT··", gives=0.1), line(2.0, "TT··", gives=0.3), line(3.0, "····", gives=0.1)]
     ) == (1, 2)
-
-
-def test_the_page_is_rendered_with_and_without_maps(monkeypatch):
-    def text() -> str:
-        files = render_page(page.PAGE, Material({}), "crosscheck report")
-        assert set(files) - {"atlas.md"} == {f"atlas_{name}.svg" for name in {item.name for item in MAPS} & displayed}
-        return files["atlas.md"]
-
-    displayed: set[str] = set()
-    monkeypatch.setattr(page, "stored_columns", lambda: ())
-    assert "Nothing was run yet" in text()
-    displayed = {"coupler"}
-    monkeypatch.setattr(page, "stored_columns", lambda: (replace(LINES[0], subject="coupler", outcomes="·==·"),))
-    for sentence in (
-        "Not run yet: A four-bar driven fast;",
-        "2 of 4 points were run",
-    ):
-        assert sentence in text()
 
 
 def test_the_command_writes_its_file_and_continues_an_earlier_run(monkeypatch, tmp_path, capsys, at_home):

@@ -21,7 +21,7 @@ from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.trajectory import Trajectory
-from reports.check.checked import CheckResult, SweepPlan, check, read_user_model, run_settings_sweep, split_error
+from reports.check.checked import CheckResult, SweepPlan, check, read_user_model, split_error
 from reports.check.document import check_data
 from reports.check.facts import compute_facts
 from reports.check.judging import find_opening, measure_errors, reference_motion, refuse_disagreement
@@ -91,14 +91,6 @@ def test_an_error_equal_to_the_tolerance_meets_it_and_a_larger_one_does_not(soft
         assert with_settings(soft, (error, 1.0), tolerance=1e-4).met == met
     diverged = replace(soft.table[0], errors=replace(soft.own_errors, finished=False))
     assert check_data(replace(soft, table=[diverged]))["error"] is None  # JSON has no infinity
-
-
-def test_the_users_settings_are_in_the_table_even_if_their_run_exhausts_the_budget(soft):
-    reading, slow = soft.reading, replace(soft.own, stepping=50.0)
-    truth = soft.judge.trajectory
-    (only,) = run_settings_sweep(reading, truth, 100, 1, slow, lambda number, count: None, SweepPlan(0.0), 1e-4)
-    assert only.run is slow
-    assert only.error == measure_errors(reading.mechanism, truth, slow).largest
 
 
 def test_the_text_of_the_report(soft, golden):

@@ -21,7 +21,7 @@ import pytest
 from numpy.typing import NDArray
 from pymunk import Body as MunkBody
 from pymunk import Space
-from pymunk.constraints import GearJoint, PinJoint, PivotJoint, RotaryLimitJoint, SimpleMotor, SlideJoint
+from pymunk.constraints import GearJoint, PinJoint, PivotJoint, RotaryLimitJoint, SlideJoint
 from scipy.integrate import solve_ivp
 
 from engines.mujoco.reading import read as read_model
@@ -225,23 +225,6 @@ def test_the_verdict_on_a_loop_that_a_weld_locks_suggests_a_connect():
     facts = dict(answer_section(result).facts)
     assert "energy" not in facts["forces"]
     assert "nothing can move" in facts["motion"]
-
-
-@pytest.mark.parametrize("second", ["pivot", "gear", "motor"])
-def test_the_verdict_on_a_locked_space_states_that_it_is_locked(second):
-    space = Space()
-    space.gravity = (0, -G)
-    body = MunkBody(2, 0.2)
-    body.position = (0.5, 0)
-    extra = {
-        "pivot": PivotJoint(space.static_body, body, (1, 0), (0.5, 0)),
-        "gear": GearJoint(space.static_body, body, 0, 1),
-        "motor": SimpleMotor(space.static_body, body, 0),
-    }
-    space.add(body, PivotJoint(space.static_body, body, (0, 0), (-0.5, 0)), extra[second])
-    result = check(read_space(space, 0.01), "gate", 0.5, 1e-4, plan=QUICK)
-    assert "gate in pymunk can't move, since its joints leave no freedom" in result.verdict
-    assert result.judge.grown == 1
 
 
 @pytest.mark.parametrize(("scale", "far"), [(1.0, 0.0), (1e-6, 1e3), (1e6, 1e3)])

@@ -11,7 +11,6 @@ import pytest
 
 from engines import single_run
 from reference.chapter import errata
-from reference.chapter.errata import Values
 from reports.cli.selection import page_tasks
 from reports.model.ending import FINE, REFUSED
 from reports.model.outcomes import Outcome
@@ -157,17 +156,6 @@ def test_an_engine_that_fails_is_reported_and_the_others_decide():
     poses = np.full_like(answer_to(first).array("pose"), np.nan)
     _, missing = referees.rulings([(first, replace(answer_to(first), values={"pose": poses, "twist": poses}))])
     assert missing == ["pymunk extended where a disc rolls off a round hill: its motion is not finite"]
-
-
-def test_a_verdict_has_the_errors_of_both_formulas_against_derivative_and_engines():
-    erratum = referees.ERRATA[0]
-    computed = Values(np.array([3.0]), np.array([1.0]), np.array([1.25]))
-    measured = [Values(np.array([3.0]), np.array([1.0]), np.array([value])) for value in (1.5, 1.4)]
-    text = referees.verdict(
-        erratum, computed, [referees.Ruling(erratum.number, "toy", "a wheel", values) for values in measured]
-    )
-    assert re.findall(r"\d+\.\d+", text) == ["1.25", "1.8", "0.25", "1.5", "0.5"]
-    assert referees.verdict(erratum, computed, []).endswith("by 0.25.")
 
 
 def test_the_command_prints_every_slip_once_and_refuses_an_unknown_one(capfd):

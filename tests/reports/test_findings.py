@@ -24,16 +24,10 @@ from reports.model.tasks import Answer, Task, answered
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
 from reports.pages.findings import (
-    CPU_AXIS,
     FINDING_PLANS,
-    LINE_STYLES,
-    STEP_AXIS,
-    PlottedLine,
     Sources,
-    draw,
     finding,
     findings,
-    of_rows,
 )
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import symptoms
@@ -50,7 +44,7 @@ from reports.pages.published.experiments import (
     freudenstein,
     rk4_drift,
 )
-from reports.pages.published.page import PAGE, bounds, drifts, largest_step
+from reports.pages.published.page import largest_step
 from reports.pages.rendering import render_page
 from reports.pages.your_loop.page import PAGE as YOUR_LOOP
 from reports.pages.your_model import page as others
@@ -63,7 +57,6 @@ from reports.write.templates import anchor, headings, link
 from reports.write.unmeasured import UNKNOWN_MARK
 from tests.committed_rows import RESULTS, answer_to, page_rows
 from tests.reports.models_of_others import models, spaces, unpacked
-from tests.rows import falling
 
 TAUGHT = tuple(page for page in PAGES if page.name in ("four_bar", "pendulum", "person", "skate", "rolling"))
 FAULTS, VERSIONS = (next(page for page in PAGES if page.name == name) for name in ("faults", "versions"))
@@ -153,18 +146,6 @@ def test_a_finding_that_the_releases_contradict_is_left_out(monkeypatch):
     assert module.of_releases("disc", [missing, expected]).points == (("1", 0.5),)
 
 
-def test_a_findings_picture_has_its_points_and_its_lines_differ_without_colours():
-    steps = [of_rows(name, Rows(falling(f"pymunk {name}", (1e-2, 1e-3))), "angle") for name in "abcd"]
-    (axes,) = draw(steps, STEP_AXIS, "error").axes
-    assert [np.asarray(line.get_xydata()).tolist() for line in axes.lines] == [[[100.0, 1e-2], [10.0, 1e-3]]] * 4
-    assert len({(line.get_linestyle(), line.get_marker()) for line in axes.lines}) == len(LINE_STYLES)
-    assert len({line.get_color() for line in axes.lines}) == 1  # one engine, one colour
-    with pytest.raises(ValueError, match="5 lines"):
-        draw([*steps, PlottedLine("e", "pymunk", ())], STEP_AXIS, "error")
-    against_cpu = of_rows("a", Rows(falling("pymunk a", (1e-2, 1e-3))), "angle", CPU_AXIS)
-    assert [x for x, _ in against_cpu.points] == pytest.approx([1.0, 10.0])  # CPU times [ms per simulated second]
-
-
 def test_every_symptom_has_a_link_to_an_existing_section():
     files = {path.name: path.read_text(encoding="utf-8") for path in RESULTS.glob("*.md")}
     files |= render_page(YOUR_LOOP, Material({}), "the command")
@@ -232,16 +213,6 @@ def test_the_bounds_distinguish_default_and_tuned(answers):
     assert largest_step(tight, "angle") == max(NEWTON_STEPS)
     assert (largest_step(loose, "angle") or 0) < max(NEWTON_STEPS)
     assert largest_step(replace(loose, values={"gap": np.full(len(NEWTON_STEPS), 1.0)}), "gap") is None
-
-
-def test_the_page_has_a_line_for_each_method_that_was_run(answers):
-    missing = {Acrobot(PYMUNK): replace(answers[Acrobot(PYMUNK)], values={"drift": np.full(3, np.inf)})}
-    text = render_page(PAGE, Material({}, {**answers, **missing}), "the command")["published.md"]
-    assert "| published | 3.55e-3 | 4.19e-6 | 1.52e-8 |" in text
-    assert "| RK4 in the two angles | 3.55e-3 | 3.91e-6 | 1.28e-9 |" in text
-    assert "| pymunk tuned | gave up | gave up | gave up |" in text
-    assert len(drifts(Material({}, answers))) == 5
-    assert drifts(Material({})) == bounds(Material({})) == []
 
 
 @pytest.fixture(scope="module")

@@ -30,7 +30,7 @@ from reports.gate.change import (
 )
 from reports.gate.pytest_plugin import changes
 from reports.gate.theory import Case
-from reports.gate.walk import lost, remarks, run_and_check, vanished
+from reports.gate.walk import remarks, run_and_check, vanished
 from reports.model.cells import Cell
 from reports.model.measure import Measurement, measure
 from reports.model.outcomes import Outcome
@@ -141,11 +141,6 @@ def test_in_many_scenes_a_method_may_not_be_nearly_three_times_as_wrong_in_the_m
     assert [check.passed for check in growth(below)] == [True]
 
 
-def test_with_other_versions_three_times_as_large_fails_and_twice_does_not():
-    for now, earlier, passes in ((2e-5, 1e-5, True), (4e-5, 1e-5, False), (5e-12, 1e-13, True)):  # the last: rounding
-        assert of(drift(row(angle=now), old(angle=earlier)), "angle").passed is passes
-
-
 def known_of(row: Measurement) -> Old:
     return Old(Outcome(row.outcome), {name: getattr(row, name) for name in NAMES}, row.reaction_rows, row.cpu)
 
@@ -160,11 +155,6 @@ def test_a_scene_of_ours_that_a_baseline_has_no_row_of_fails_and_somebody_elses_
     assert not check.passed
     assert "write the baseline again" in str(check)
     assert vanished(ours, (old(), old())) == ()
-
-
-def test_what_a_baseline_has_and_the_grid_has_lost_is_named():
-    cells = {identity(row()): old(), identity(replace(row(), engine="gone")): old()}
-    assert lost(Baseline(cells), [Case(SCENE, Toy(), ConvergenceOrder(2))]) == (("disc", "gone default"),)
 
 
 def test_run_and_check_compares_each_row_and_its_cost_with_the_baselines_row_of_the_same_cell(at_home):

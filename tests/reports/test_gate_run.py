@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, cast
 
 import pytest
 
-from engines import ConvergenceOrder, Engine, mujoco, pymunk
+from engines import Engine, mujoco, pymunk
 from reference.scenes.four_bar.scenes import DrivenFourBar
-from reports.gate import grid_tests
 from reports.gate.judge import integrate
 from reports.gate.prediction import prediction
 from reports.gate.pytest_plugin import _engines
@@ -21,16 +19,8 @@ from reports.model.measure import measure
 from tests import ROOT
 from tests.reports.test_gate import row
 from tests.reports.test_gate_baseline import written
-from tests.toys import Disc, Toy
+from tests.toys import Disc
 from tests.wrong.adapters import SMALL_MISTAKES, Wrong
-
-
-@dataclass(frozen=True)
-class Absent(Toy):
-    @property
-    def missing(self) -> str:
-        return "needs what pip install brings"
-
 
 SUITE = """
 import pytest
@@ -71,21 +61,6 @@ def test_only_what_is_selected_is_run_and_the_table_and_the_file_tell_it(suite, 
     )
     assert "| disc | toy two |" in (suite.path / "out.md").read_text()
     assert "toy one" not in (suite.path / "out.md").read_text()
-
-
-def test_an_engine_that_is_not_there_is_skipped_with_its_extra():
-    with pytest.raises(pytest.skip.Exception, match="what pip install brings"):
-        grid_tests.verdict_of({}, Case(Disc(), Absent(), ConvergenceOrder(2)))
-
-
-def test_workers_of_pytest_leave_the_grid_to_its_own(suite):
-    """The attribute `workerinput` marks the configuration of a worker of pytest-xdist."""
-    suite.makeconftest(
-        'pytest_plugins = ["reports.gate.pytest_plugin"]\ndef pytest_configure(config): config.workerinput = {}\n'
-    )
-    found = suite.runpytest_inprocess("-rs", "-p", "no:xdist", "--baseline", "errors.csv")
-    found.assert_outcomes(skipped=3)
-    found.stdout.fnmatch_lines(["*the grid has workers of its own: pytest -m crosscheck, without -n"])
 
 
 @pytest.mark.parametrize(

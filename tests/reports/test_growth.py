@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,15 +11,13 @@ import pytest
 from engines import ConvergenceOrder, NotDeclared
 from reference.scenes.pendulum.scenes import LinkPendulum, LongPendulum
 from reports.cli.selection import BadInput, steps_per_sample
-from reports.model import measure as measuring
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
-from reports.model.measure import repeated_stepping
 from reports.model.outcomes import Outcome
 from reports.pages.scaling.banded import BandedChain
 from reports.pages.scaling.page import MethodSeries, SizePoint, cost_table, crossing, series_of
 from reports.write.rows import Rows
 from tests.rows import row_of, table
-from tests.toys import Disc, Plain, Toy
+from tests.toys import Disc, Toy
 
 
 def test_the_banded_solver_and_a_dense_solver_give_equal_forces():
@@ -70,49 +66,6 @@ def test_each_point_of_a_series_has_the_numbers_of_its_cell():
     assert [p.error for p in tuned.points] == pytest.approx([1.1e-3, math.nan, 1.3e-3, math.nan, math.nan], nan_ok=True)
     assert [p.outcome for p in tuned.points] == ["finished", "torn", "finished", "finished", "saturated"]
     assert (other.points[0].step, other.points[0].error) == (pytest.approx(3.4e-4), 1.9e-3)
-
-
-class ToyClock:
-    def __init__(self, monkeypatch):
-        self.now = 0.0
-        monkeypatch.setattr(measuring.time, "process_time", lambda: self.now)
-
-
-@dataclass(frozen=True)
-class SlowToy(Plain):
-    """An engine whose builds and runs take the times [s] in the lists `builds` and `steps`."""
-
-    clock: ToyClock
-    builds: list
-    steps: list
-    variant: str = "slow"
-    name: str = "toy"
-
-    def build(self, mechanism, dt) -> Any:
-        self.clock.now += self.builds.pop(0)
-
-        def run(samples, every):
-            seconds = self.steps.pop(0)
-            self.clock.now += seconds
-            return SimpleNamespace(stepping=seconds)
-
-        return run
-
-
-def test_a_cost_is_the_least_of_several_runs_and_a_long_run_is_not_repeated(monkeypatch):
-    clock = ToyClock(monkeypatch)
-    engine = SlowToy(clock, [2e-3, 1e-3, 1.5e-3, 1.5e-3, 4.5e-3], [2e-3, 1e-3, 1.5e-3, 1.5e-3, 2.5e-3])
-    result = repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3)
-    assert result == (pytest.approx(1e-3), 5, pytest.approx(1e-3))
-    engine = SlowToy(clock, [2.5e-3] * 3, [1e-2, 1.5e-2, 5e-3])
-    assert repeated_stepping(Cell(Disc(), engine, 1), Disc().mechanism(), 1e-3, 4e-3) == (
-        1e-2,
-        2,
-        pytest.approx(2.5e-3),
-    )
-    never = SlowToy(clock, [], [])
-    assert repeated_stepping(Cell(Disc(), never, 1), Disc().mechanism(), 0.5, 4e-3) == (0.5, 1, 4e-3)
-    assert measuring.process_seconds(lambda: setattr(clock, "now", clock.now + 3.0)) == (pytest.approx(3.0), None)
 
 
 def test_a_step_must_divide_the_sampling_to_ten_digits():

@@ -10,7 +10,7 @@ import os
 import re
 import time
 from dataclasses import dataclass, fields, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -23,8 +23,8 @@ from reference.trajectory import Trajectory
 from reports.cli import known
 from reports.model import catalogue
 from reports.model.catalogue import SCENES
-from reports.model.cells import Cell, estimated_cost
-from reports.model.ending import FINE, REFUSED, BadInput
+from reports.model.cells import Cell
+from reports.model.ending import FINE, REFUSED
 from reports.model.measure import blank, measure
 from reports.run.supervisor import supervise
 from reports.site.markdown import render_html
@@ -83,19 +83,6 @@ def test_a_scene_without_duration_or_samples_is_refused(here, text, telling):
     with pytest.raises(ValueError, match=r"\w") as reported:
         load(str(path), catalogue.SCENE)
     assert telling in str(reported.value)
-
-
-@pytest.mark.parametrize("deed", ["raise RuntimeError('no')", "return float('nan')", "return 'long'"])
-def test_a_step_cost_that_is_none_names_the_engine_and_the_scene(deed):
-    @dataclass(frozen=True)
-    class Odd(Toy):
-        def step_cost(self, mechanism) -> Any:
-            if "raise" in deed:
-                raise RuntimeError("no")
-            return float("nan") if "nan" in deed else "long"
-
-    with pytest.raises(BadInput, match="toy default: step_cost of disc"):
-        estimated_cost(Cell(Disc(), Odd(), 1))
 
 
 def forks(file):

@@ -85,12 +85,6 @@ def test_an_actuator_turns_a_wheel_as_mujoco_documents(case):
     assert any("MuJoCo takes 1.5" in note.reason for note in reading.notes) == (case == "control beyond its range")
 
 
-def test_a_limit_that_the_velocity_reaches_is_seen():
-    """The servo with the gain 1 N m s and the control 0 has a torque of -2 N m at 2 rad/s."""
-    with pytest.raises(Unsupported, match=r"^actuator 'brake' reaches the limit of its force: so it does at the"):
-        mjcf(WHEEL, f"<actuator>{BRAKE}</actuator>", rate=2.0)
-
-
 @pytest.mark.parametrize(("active", "flags"), [("false", ""), ("true", 'constraint="disable"')])
 def test_an_equality_that_is_switched_off_holds_nothing(active, flags):
     text = f'<equality><weld name="glue" body1="l" active="{active}"/></equality>'
@@ -292,17 +286,6 @@ def test_a_body_that_may_fall_asleep_is_named_with_the_time():
     # The model is checked without sleep, or if the body is always too fast to sleep.
     assert check(read_space(swinging(0.3, 0.02), 0.001, ["sleep"]), "awake", 1.0, 1e-1, plan=NOTHING).met
     assert check(read_space(swinging(0.3, 1e-5), 0.001), "fast", 1.0, 1e-1, plan=NOTHING).met
-
-
-def test_without_a_threshold_of_its_own_a_space_counts_what_gravity_adds_in_a_step():
-    """The limit is the velocity that gravity adds in a step of 10 ms, 0.098 m/s; a rotating body is not idle."""
-    with pytest.raises(Unsupported, match=r"^body 1 may fall asleep"):
-        check(read_space(swinging(0.3, 0.0), 0.01), "asleep", 0.5, 1e-1)
-    spinning = disc()
-    spinning.angular_velocity = 1.0
-    spinning_space = space_of(spinning)
-    spinning_space.sleep_time_threshold, spinning_space.idle_speed_threshold = 0.1, 0.2
-    assert check(read_space(spinning_space, 0.01), "spinning", 0.5, 1e-1, plan=NOTHING).met
 
 
 def test_limits_have_two_ends_that_count_from_the_first_body_to_the_second():

@@ -15,7 +15,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from reports.__main__ import main
 from reports.cli import conform as conform_command
 from reports.cli.conform import Named, asked
 from reports.model.cells import Cell
@@ -28,7 +27,6 @@ from reports.run.supervisor import WorkersLost, supervise
 from tests import ROOT
 from tests.reports.rough_toys import RoughToy, act, dies, fork_server, is_free, wait_until
 from tests.toys import Disc, FailingToy, Toy, in_process
-from tests.wrong.adapters import Wrong
 
 pytest.importorskip("fcntl", reason="signals and locks of Unix are the subject here")
 
@@ -270,28 +268,6 @@ def test_a_cell_whose_worker_is_killed_twice_from_outside_is_reported_and_not_st
         with pytest.raises(WorkersLost, match=r"1 of 2 cells are lost, the others are stored.*SIGKILL"):
             run_into(store, cells)
         assert list(store.get(cells)) == [cells[1]]
-
-
-class Aborting(Wrong):
-    """An engine that aborts the process like a failed assertion of native code."""
-
-    def build(self, mechanism, dt):
-        if dt == 0:
-            os.write(2, b"Aborting due to Wrong error: dt is zero\n")
-            os.abort()
-        return self.engine.build(mechanism, dt)
-
-
-ABORTING = Aborting("aborts where a step is zero")
-
-
-def test_an_abort_fails_one_check_of_conform_and_does_not_end_the_program(capfd):
-    with pytest.raises(SystemExit) as ended:
-        main(["conform", "tests.reports.test_pool:ABORTING"])
-    captured = capfd.readouterr()
-    assert ended.value.code == 1
-    (failed,) = [line for line in captured.out.splitlines() if line.startswith("  fails")]
-    assert "signal 6 (SIGABRT): Aborting due to Wrong error: dt is zero" in failed
 
 
 def test_a_check_of_conform_that_never_ends_fails_with_the_name_of_its_mechanism(monkeypatch):

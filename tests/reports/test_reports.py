@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 
 from reports.cli.report import moving_picture
-from reports.cli.selection import choose_cells
 from reports.gate.theory import cases
 from reports.model.catalogue import PAGES
 from reports.model.cells import QUICK, Cell, sweep_cells
@@ -100,15 +99,6 @@ def test_pictures_are_well_formed_and_every_colour_has_its_dark_counterpart(file
             assert DARK.paper in sheet
             assert all("fill: " in text_value for text_value in re.findall(r"<text [^>]*>", text)), name
             assert not re.search("Date|/tmp", text)
-
-
-def test_a_quick_run_has_the_experiments_of_pages_and_a_full_run_the_large_ones_too():
-    page = replace(PAGE, name="discs")
-    quick = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES), (page,), full=False)
-    full = choose_cells((Disc(),), (*ENGINES, *FAST_FAILURES, Toy(factor=0.1)), (page,), full=True)
-    assert {cell.purpose for cell in quick} == {"sweep", "failure"}
-    assert {cell.purpose for cell in full} == {"sweep", "usual", "failure", "large"}
-    assert {cell.every for cell in choose_cells((Disc(),), ENGINES, (page,), False, every=[4])} == {4}
 
 
 README = "\n".join(marks("loop"))

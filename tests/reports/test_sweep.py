@@ -14,7 +14,6 @@ from reports.model.cells import (
     is_run_at,
     is_step,
     usual_cells,
-    usual_variants,
 )
 from reports.model.convergence import Verdict, by_method, fit, judged, sweeps
 from reports.model.measure import measure
@@ -176,13 +175,6 @@ def test_a_sweep_judges_its_rows():
     assert judgements(1e-2, 3.1e-5, 1e-5, 1e-5, 1e-5, quantity="position") == ["finished"] * 2 + ["plateau"] * 3
 
 
-def test_only_finished_rows_of_a_sweep_are_judged():
-    rows = falling("a x", (1e-2, 1e-4, 1e-6))
-    torn, other = row_of("a x", step=1e-5, outcome=Outcome.TORN), row_of("a x", step=1e-6, purpose="failure")
-    assert [r.outcome for r in judged([*rows, torn, other])] == ["converged"] * 3 + ["torn", "finished"]
-    assert [r.angle for r in judged(rows)] == [r.angle for r in rows]
-
-
 def test_the_best_row_has_the_least_error_of_those_that_can_be_compared():
     rows = [
         row_of("a x", angle=1e-3, position=1e-9, step=1e-1),
@@ -213,11 +205,3 @@ def test_a_step_that_the_sweep_has_is_not_run_twice_and_one_that_it_left_out_for
     cells = usual_cells((Disc(),), (Toy("default"),))
     assert [(cell.every, cell.samples) for cell in cells if is_step(cell.step, 1e-3)] == []
     assert [round(cell.step, 6) for cell in cells] == [0.016667, 0.002]
-
-
-def test_the_usual_variants_are_the_three_words_in_their_order_or_the_first_of_others():
-    methods = [("a", "tuned"), ("a", "x"), ("a", "default"), ("b", "one"), ("b", "two"), ("b", "three"), ("b", "four")]
-    assert usual_variants(methods) == {"a": ("default", "tuned"), "b": ("one", "two", "three")}
-    engines = (Toy("default"), Toy("soft"), Toy("one", name="b"), Toy("two", name="b"))
-    chosen = {(cell.engine.name, cell.engine.variant) for cell in usual_cells((Disc(),), engines)}
-    assert chosen == {("toy", "default"), ("b", "one"), ("b", "two")}

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,7 +17,6 @@ from reports.gate.prediction import all_tasks
 from reports.model import measure as measuring
 from reports.model.catalogue import PAGES
 from reports.model.cells import Cell
-from reports.model.measure import measure
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
 from reports.model.tasks import Answer, Motion, Task, answered, trajectory_of
@@ -157,17 +155,3 @@ def test_an_exact_motion_is_stored_to_the_last_bit_and_a_damaged_file_is_compute
         np.testing.assert_array_equal(motion(scene, t, "name", tmp_path).pose, first.pose)
         assert file.read_bytes() == total
     assert motion(scene, t, "name", tmp_path / "none").pose.shape == (6, 2, 3)
-
-
-def test_a_run_stores_exact_motions_and_gives_the_same_rows_with_them(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(measuring, "SHORT_MOTION", -1.0)
-    cell = Cell(Disc(), Toy(), 1)
-    plain = measure(cell, repeat=False)
-    with Store(Path("here/cells.sqlite")) as store:
-        for _ in range(2):
-            assert run_into(store, [cell], fresh=True, timed=False, supervised=in_process) == 1
-            [row] = store.get([cell]).values()
-            assert repr(replace(row, cpu=0.0, build=0.0)) == repr(replace(plain, cpu=0.0, build=0.0))
-    assert {file.suffix for file in (tmp_path / "here" / measuring.TRUTHS).iterdir()} == {".npz"}
-    assert cell.truth == Cell(Disc(), Toy(factor=3.0), 7, "map", 5).truth != Cell(Disc(rate=3.0), Toy(), 1).truth
