@@ -413,7 +413,7 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
 def test_a_motion_about_one_point_gives_no_shapes(opened, lesson):
     page = opened(f"lessons/{lesson}.html", viewport=TALL)
     page.locator("[data-motion=Circle]").click()
-    page.get_by_label("the body turns clockwise").uncheck()  # the page has selected the direction that gives two shapes
+    page.get_by_label("the body turns").select_option("once")  # the page has selected a number that gives two shapes
     assert "only turns about one fixed point" in page.inner_text(".cam .count")
     assert page.locator("[data-file=dxf]").is_disabled()
 

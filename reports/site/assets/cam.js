@@ -28,7 +28,7 @@ export function seriesOf(drawn) {
   return { cosines: frequencies.map((k) => part(Math.cos, k)), sines: frequencies.map((k) => part(Math.sin, k)) };
 }
 
-/** Return both centrodes of a body whose point O' follows the path while the body turns once; `turn` is 1 or -1.
+/** Return both centrodes of a body whose point O' follows the path once while the body turns `turn` times.
  * The instant centre is at k x v / omega from O'. @param {Series} series @param {number} turn @param {number} [points] @returns {Shapes} */
 export function shapesOf({ cosines, sines }, turn, points = POINTS) {
   /** @type {Shapes} */
@@ -110,12 +110,13 @@ function begin(place) {
     '<svg class="lot" viewBox="-1.2 -.9 2.4 1.8" role="img" aria-label="Draw the path of a point; the two shapes appear."><g transform="scale(1 -1)"><path class="space"/><path class="path"/>' +
     '<g class="moving"><path class="body"/><path class="mark" d="M0 0H.2"/><circle class="nose" r=".03"/></g><circle class="touch" r=".025"/></g></svg>' +
     `<div class="controls">${Object.keys(MOTIONS).map((name) => `<button type="button" data-motion="${name}">${name}</button>`).join("")}` +
-    '<label><input type="checkbox"> the body turns clockwise</label>' +
-    '<label class="time">angle <input type="range" min="0" max="360" value="0"></label>' +
+    '<label>the body turns <select><option value="1">once</option><option value="-1">once clockwise</option><option value="2">twice</option><option value="-2">twice clockwise</option></select></label>' +
+    '<label class="time">place on the path <input type="range" min="0" max="360" value="0"></label>' +
     '<button type="button" data-file="svg">Download SVG</button><button type="button" data-file="dxf">Download DXF</button></div><p class="count" role="status"></p>';
   const find = (/** @type {string} */ name) => /** @type {SVGElement} */ (place.querySelector(name));
   const drawing = /** @type {SVGSVGElement} */ (/** @type {unknown} */ (find("svg")));
-  const [clockwise, angle] = /** @type {HTMLInputElement[]} */ ([...place.querySelectorAll("input")]);
+  const turns = /** @type {HTMLSelectElement} */ (place.querySelector("select"));
+  const angle = /** @type {HTMLInputElement} */ (place.querySelector("input"));
   let series = MOTIONS.Ellipse;
   let shapes = shapesOf(series, 1);
   /** @type {Point[]} */
@@ -128,22 +129,21 @@ function begin(place) {
   }
 
   function make() {
-    shapes = shapesOf(series, clockwise.checked ? -1 : 1);
+    shapes = shapesOf(series, Number(turns.value));
     for (const name of /** @type {const} */ (["path", "space", "body"])) find(`.${name}`).setAttribute("d", line(shapes[name]));
     const [fixed, moving] = [extent(shapes.space), extent(shapes.body)];
     const still = fixed < SMALL;
     for (const button of place.querySelectorAll("[data-file]")) button.toggleAttribute("disabled", still);
-    /** @type {HTMLElement} */ (place.querySelector(".count")).textContent = still ? "The body only turns about one fixed point, so both shapes are that point. Draw another path, or turn the body the other way."
+    /** @type {HTMLElement} */ (place.querySelector(".count")).textContent = still ? "The body only turns about one fixed point, so both shapes are that point. Draw another path, or choose another number of turns."
       : `The fixed shape is ${fixed.toFixed(3)} m wide, the moving shape ${moving.toFixed(3)} m. The moving shape rolls on the fixed one, and the dot of the body then follows the drawn path.` +
-        (crosses(shapes.space) || crosses(shapes.body) ? " A shape crosses itself, so it cannot be cut from one piece: draw a rounder path, or turn the body the other way." : "");
+        (crosses(shapes.space) || crosses(shapes.body) ? " A shape crosses itself, so it cannot be cut from one piece: draw a rounder path, or choose another number of turns." : "");
     turnTo();
   }
 
-  /** Take a path; the body turns the other way if only then both shapes can be cut. @param {Series} next */
+  /** Take a path; another number of turns is selected if only then both shapes can be cut. @param {Series} next */
   function take(next) {
     series = next;
-    const turn = clockwise.checked ? -1 : 1;
-    if (!cuttable(shapesOf(series, turn)) && cuttable(shapesOf(series, -turn))) clockwise.checked = turn === 1;
+    turns.value = [turns.value, "2", "-2", "1", "-1"].find((turn) => cuttable(shapesOf(series, Number(turn)))) ?? turns.value;
     make();
   }
 
@@ -178,7 +178,7 @@ function begin(place) {
       setTimeout(() => URL.revokeObjectURL(link.href), 1000);
     });
   }
-  clockwise.addEventListener("change", make);
+  turns.addEventListener("change", make);
   angle.addEventListener("input", turnTo);
   make();
 }

@@ -318,7 +318,7 @@ function begin() {
   // One jump causes several scroll events, since the page's height changes while it loads. Only an action of the reader ends it.
   for (const action of ["wheel", "touchmove", "pointerdown", "keydown"]) addEventListener(action, () => (jumping = false), { passive: true });
   addEventListener("scroll", () => (scrolled ||= !jumping), { passive: true });
-  // The picture shows the experiment in a strip of the window, which a phone has below its picture. The first experiment loads the engines.
+  // The picture shows the experiment on a line across the window, which a phone has below its picture. The first experiment loads the engines.
   const linked = restored();
   const parts = [...root.querySelectorAll(".part")];
   const looking = new IntersectionObserver((entries) => {
@@ -326,7 +326,7 @@ function begin() {
     for (const { target } of scrolled ? near : []) {
       if (target instanceof HTMLElement) stageOf(target, answered.get(target) ?? {}, true);
     }
-  }, { rootMargin: matchMedia("(max-width: 52rem)").matches ? "-45% 0px -50% 0px" : "-25% 0px -70% 0px" });
+  }, { rootMargin: matchMedia("(max-width: 52rem)").matches ? "-48% 0px -52% 0px" : "-28% 0px -72% 0px" });
   for (const part of parts) looking.observe(part);
   if (!linked && parts[0] instanceof HTMLElement) stageOf(parts[0], {}, true);
   addEventListener("hashchange", restored);
