@@ -11,4 +11,4 @@ if [ "${#wanted[@]}" -gt 0 ]; then
   apt-get update
   apt-get install --yes --no-install-recommends "${wanted[@]}"
 fi
-python -m pip install --quiet --editable ".[test,browser]"
+python -c "import playwright" 2> /dev/null || python -m pip install --quiet --editable ".[test,browser]"
