@@ -1,4 +1,4 @@
-"""Measurements of `crosscheck bench`: CPU times of engines, the judge and commands, and the size of the site.
+"""Measurements of `crosscheck bench`: CPU times of engines, the judge and commands.
 
 Times of loops, of the judge and of commands are minima of several runs.
 """
@@ -6,17 +6,14 @@ Times of loops, of the judge and of commands are minima of several runs.
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
-import threading
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 
@@ -31,26 +28,11 @@ from reports.model.cells import Cell
 from reports.model.ending import BadInput
 from reports.model.measure import measure
 from reports.model.spending import taken
-from reports.site.folder import MARKER, compressed_size, server
 
 BARE_LOOP = Kind("bare loop", lambda value: "" if callable(value) else "it can't be called")
 TURNS = 7  # Number of runs of each loop. Two loops run alternately, so a slow period of the machine affects both.
 COMMAND_TURNS = 3
 ROOT = Path(__file__).resolve().parents[2]
-LESSON, LESSON_SCENE, LESSON_STEP = "lessons/four_bar.html", 1, 4e-3  # Page, index of the scene, and step [s].
-# The time of the first contentful paint of a page, as the browser reports it [ms].
-PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null"
-STEPPED = """async ([scene, step, turns]) => {
-  const { ask, form } = window.crosscheck;
-  form.move(scene, {});
-  const setting = { ...form.setting(null), steps: Math.round(1 / step) };
-  const spent = { munk: [], mujoco: [] };
-  for (let turn = 0; turn < turns; turn++) {
-    for (const { name, milliseconds } of (await ask({ setting })).motions) spent[name].push(milliseconds);
-  }
-  return spent;
-}"""
-
 Row = tuple[str, float, str]  # name, value, unit
 WORLDS = Kind("program of many worlds", lambda value: "" if callable(value) else "it can't be called")
 WORLD_COUNTS = (1, 64, 4096)
@@ -229,49 +211,3 @@ def measure_command(words: Sequence[str]) -> CommandCost:
             process.returncode = os.waitstatus_to_exitcode(status)
             runs.append((time.monotonic() - begin, usage.ru_utime + usage.ru_stime, process.returncode))
     return CommandCost(tuple(words), *min(runs))
-
-
-def measure_site(folder: Path) -> list[Row]:
-    """Sizes of a site, and loading times of two pages in Chromium. Raises BadInput without a browser or a site."""
-    if not (folder / MARKER).is_file():
-        raise BadInput(f"{folder} has no site: `crosscheck site` writes one")
-    contents = {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    rows = [("site: files", float(len(contents)), "1"), ("site: compressed", compressed_size(contents) / 1e6, "MB")]
-    browser = shutil.which("chromium") or shutil.which("chromium-browser")
-    try:
-        from playwright.sync_api import sync_playwright  # pyright: ignore[reportMissingImports]
-    except ImportError:
-        raise BadInput("playwright is not installed: pip install -e '.[browser]'") from None
-    if browser is None:
-        raise BadInput("no Chromium is installed: tests/tools/browser.sh installs it on Debian")
-    running = server(folder, 0)
-    threading.Thread(target=running.serve_forever, daemon=True).start()
-    address = f"http://127.0.0.1:{running.server_address[1]}/"
-    try:
-        with sync_playwright() as started:
-            return rows + _measure_pages(
-                started.chromium.launch(executable_path=browser, args=["--no-sandbox"]), address
-            )
-    finally:
-        running.shutdown()
-        running.server_close()
-
-
-def _measure_pages(browser: Any, address: str) -> list[Row]:
-    try:
-        page = browser.new_page()
-        page.goto(address + "index.html")
-        page.wait_for_function(f"({PAINTED}) !== null")
-        lesson = browser.new_page()
-        lesson.goto(address + LESSON)
-        lesson.wait_for_selector("#lesson.ready")
-        ready = lesson.evaluate("performance.now()") / 1000
-        stepped = lesson.evaluate(STEPPED, [LESSON_SCENE, LESSON_STEP, 25])
-    finally:
-        browser.close()
-    name = f"site: a second of the four-bar in steps of {1e3 * LESSON_STEP:g} ms by"
-    return [
-        ("site: first picture of the first page", page.evaluate(PAINTED) / 1000, "s"),
-        ("site: engines of a lesson ready", ready, "s"),
-        *((f"{name} {engine}", min(times), "ms") for engine, times in stepped.items()),
-    ]

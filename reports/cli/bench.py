@@ -10,6 +10,7 @@ import typer
 
 from engines import method_name
 from engines.registry import ENGINES
+from reports.bench.site import measure_site
 from reports.bench.times import (
     COMMAND_TURNS,
     WORLD_COUNTS,
@@ -17,7 +18,6 @@ from reports.bench.times import (
     measure_grid,
     measure_judge,
     measure_loops,
-    measure_site,
     measure_truths,
     measure_worlds,
 )

@@ -63,7 +63,7 @@ def build(source: SiteSource, lessons: Iterable[Lesson] = LESSONS) -> Files:
     extra = _extra_files(source, lessons)
     documents = _documents(source, lessons)
 
-    context = {"lessons": _grouped(lessons), "foot": source.foot}
+    context = {"lessons": _grouped(lessons), "foot": source.foot, "colours": Markup(colours())}
 
     def add_pages(app: Any) -> Iterator[Extra]:
         for lesson in lessons:
@@ -95,7 +95,7 @@ def _grouped(lessons: tuple[Lesson, ...]) -> dict[str, list[tuple[str, str]]]:
 def _extra_files(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
     """Return scripts, packages, data of the lessons and tables. A missing package is reported in `source.troubles`."""
     files: Files = {path.name: path.read_bytes() for path in sorted((HERE / "assets").iterdir())}
-    files |= {"colours.css": colours().encode(), "front.svg": _front_picture(source).encode()}
+    files["front.svg"] = _front_picture(source).encode()
     files[ENGINE_FILES["munk2d"]] = COMPILED.read_bytes()
     release, _ = compiled_from(COMPILED.read_text(encoding="utf-8"))
     if release != version("pymunk"):

@@ -56,8 +56,10 @@ export const extent = (points) => Math.max(...[0, 1].map((axis) => Math.max(...p
 export function crosses(points) {
   const side = (/** @type {Point} */ [ax, ay], /** @type {Point} */ [bx, by], /** @type {Point} */ [cx, cy]) => (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
   const apart = (/** @type {number} */ a, /** @type {number} */ b) => side(points[a], points[a + 1], points[b]) * side(points[a], points[a + 1], points[b + 1]) < -ROUNDING;
+  const high = points.map(([, y], k) => Math.max(y, points[k + 1]?.[1] ?? y));
+  const low = points.map(([, y], k) => Math.min(y, points[k + 1]?.[1] ?? y));
   const last = points.length - 1;
-  for (let a = 0; a < last; a++) for (let b = a + 2; b < last; b++) if (apart(a, b) && apart(b, a)) return true;
+  for (let a = 0; a < last; a++) for (let b = a + 2; b < last; b++) if (low[a] <= high[b] && low[b] <= high[a] && apart(a, b) && apart(b, a)) return true;
   return false;
 }
 

@@ -9,7 +9,7 @@ const BOTTOM = 30;
 const TOP = 20;
 const FLOOR = 1e-16; // errors below rounding are not drawn
 
-/** @typedef {{name: string, mark: number, values: ArrayLike<number>}} Line */
+/** @typedef {{label: string, mark: number, errors: ArrayLike<number>}} Line */
 
 /** Return the width of the chart in its element. @param {Element} place */
 const widthIn = (place) => Math.min(WIDEST, Math.max(NARROWEST, place.clientWidth || WIDEST));
@@ -29,9 +29,9 @@ const MEASURES = { angle: "largest error of an angle [rad]", position: "largest 
  * @param {Element} place @param {ArrayLike<number>} t @param {Line[]} lines @param {Measure} measure
  * @returns {(time: number) => void} */
 export function errorChart(place, t, lines, measure) {
+  const width = widthIn(place); // before the change of the page, which would need a layout
   place.replaceChildren();
-  const width = widthIn(place);
-  const positive = lines.flatMap((line) => Array.from(line.values).filter((v) => v > FLOOR && Number.isFinite(v)));
+  const positive = lines.flatMap((line) => Array.from(line.errors).filter((v) => v > FLOOR && Number.isFinite(v)));
   if (!positive.length) return () => {};
   const high = Math.ceil(Math.log10(Math.max(...positive)));
   // The scale covers nine of ten values, since errors at the first instants are very small.
@@ -59,13 +59,13 @@ export function errorChart(place, t, lines, measure) {
     let path = "";
     let drawing = false;
     for (let index = 0; index < t.length; index++) {
-      const power = Math.log10(line.values[index]);
+      const power = Math.log10(line.errors[index]);
       const seen = Number.isFinite(power) && power >= low;
       if (seen) path += `${drawing ? "L" : "M"}${x(t[index]).toFixed(1)} ${y(Math.min(power, high)).toFixed(1)}`;
       drawing = seen;
     }
     const group = svg("g", { class: `method-${line.mark}` });
-    group.append(svg("path", { class: "line", d: path }), svg("title", {}, line.name));
+    group.append(svg("path", { class: "line", d: path }), svg("title", {}, line.label));
     chart.append(group);
   }
   const now = svg("line", { class: "now", y1: TOP, y2: HEIGHT - BOTTOM, x1: LEFT, x2: LEFT });

@@ -3,7 +3,7 @@
 
 import { svg } from "./chart.js";
 import { rows } from "./exact.js";
-import { ends, slip, told } from "./motion.js";
+import { gapsOf, grouped, told } from "./motion.js";
 
 /** @typedef {import("./motion.js").Take} Take */
 /** @typedef {{pose: Float64Array, twist: Float64Array, impulses: Float64Array, left: number}} Sweep */
@@ -20,11 +20,9 @@ export class Lens {
     this.choice = /** @type {HTMLSelectElement} */ (place.querySelector("select"));
     /** @type {Take|null} */
     this.take = null;
-    /** @type {{name: string, unit: string, at: (motion: number, frame: number) => number[]}[]} */
+    /** @type {ReturnType<typeof gapsOf>} */
     this.joints = [];
     this.factor = 1;
-    /** @type {number[]} the largest gap of each joint */
-    this.largest = [];
     this.scaled = 0; // `drawn` when the scale was chosen; reading it in each frame would force a layout
     this.enlarged = 1; // factor of the differences in the main picture
     this.frame = 0;
@@ -34,41 +32,16 @@ export class Lens {
   /** @param {Take} take */
   load(take) {
     this.take = take;
-    const bodies = take.bodies.length;
-    this.joints = [
-      ...take.joints.map((joint) => ({
-        name: joint.name, unit: "m",
-        at: (/** @type {number} */ motion, /** @type {number} */ frame) => {
-          const [[ax, ay], [bx, by]] = ends(joint, take.motions[motion].pose, bodies, frame);
-          return [bx - ax, by - ay];
-        },
-      })),
-      ...take.blades.map((blade) => ({
-        name: blade.name, unit: "m/s",
-        at: (/** @type {number} */ motion, /** @type {number} */ frame) => slip(blade, take.motions[motion].pose, take.motions[motion].twist, bodies, frame),
-      })),
-    ];
+    this.joints = gapsOf(take);
     this.place.hidden = !this.joints.length || !take.motions.length;
     if (this.place.hidden) return;
-    this.largest = this.joints.map((_, index) => this.most(index));
-    const worst = this.largest.indexOf(Math.max(...this.largest));
+    const worst = take.gaps.indexOf(Math.max(...take.gaps));
     this.choice.replaceChildren(...this.joints.map(({ name }, index) => new Option(`${index === worst ? "worst: " : ""}${name}`, String(index), false, index === worst)));
-    this.scale();
   }
 
-  /** Return the largest gap of a joint in this motion. @param {number} index */
-  most(index) {
-    const { take, joints } = this;
-    let most = 0;
-    for (let frame = 0; take && frame < take.t.length; frame++) {
-      take.motions.forEach((_, motion) => (most = Math.max(most, Math.hypot(...joints[index].at(motion, frame)) || 0)));
-    }
-    return most;
-  }
-
-  /** Return the magnification at which the largest gap fills the picture. */
+  /** Choose the magnification at which the largest gap fills the picture. */
   scale() {
-    const most = this.largest[Number(this.choice.value)];
+    const most = this.take?.gaps[Number(this.choice.value)] ?? 0;
     this.factor = most > 0 ? (0.42 * SIZE) / most : 0;
     this.scaled = this.drawn;
     this.show(this.frame);
@@ -82,10 +55,11 @@ export class Lens {
     if (!take || !joint || this.place.hidden) return;
     const middle = SIZE / 2;
     const parts = [svg("circle", { class: "hole", cx: middle, cy: middle, r: 9 })];
-    const remarks = take.motions.map(({ name, mark }, motion) => {
+    const remarks = take.motions.map((motion) => {
+      const { label, mark } = motion;
       const [x, y] = joint.at(motion, frame);
       const away = Math.hypot(x, y);
-      if (!Number.isFinite(away)) return `${name}: lost`;
+      if (!Number.isFinite(away)) return `${label}: lost`;
       const group = svg("g", { class: `method-${mark}` });
       const trail = Array.from({ length: Math.min(TRAIL, frame) + 1 }, (_, back) => joint.at(motion, frame - back)).filter(([a, b]) => Number.isFinite(a + b));
       const path = trail.map(([a, b], index) => `${index ? "L" : "M"}${(middle + factor * a).toFixed(1)} ${(middle - factor * b).toFixed(1)}`).join("");
@@ -93,7 +67,7 @@ export class Lens {
       group.append(svg("path", { class: mark === 2 && joint.unit === "m" ? "spring" : "gap", d: zigzag(middle, middle, middle + factor * x, middle - factor * y, mark === 2 && joint.unit === "m") }));
       group.append(svg("circle", { class: "dot", cx: middle + factor * x, cy: middle - factor * y, r: 5 }));
       parts.push(group);
-      return `${name} ${told(away)} ${joint.unit}`;
+      return `${label} ${told(away)} ${joint.unit}`;
     });
     const bar = 10 ** Math.floor(Math.log10((0.5 * SIZE) / (factor || 1)));
     if (factor) {
@@ -102,7 +76,7 @@ export class Lens {
     }
     this.picture.replaceChildren(...parts);
     const enlarged = this.scaled ? factor / this.scaled / this.enlarged : 0;
-    const times = joint.unit === "m" && factor && enlarged ? `, ${Number(enlarged.toPrecision(1)).toLocaleString("en")} times as large as above` : "";
+    const times = joint.unit === "m" && factor && enlarged ? `, ${grouped(Number(enlarged.toPrecision(1)))} times as large as above` : "";
     this.words.textContent = `${joint.unit === "m" ? "Open" : "Slips"} by: ${remarks.join(", ")}${times}.`;
   }
 

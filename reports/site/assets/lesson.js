@@ -3,17 +3,13 @@
 
 import { dragged } from "./exact.js";
 import { Form } from "./form.js";
-import { told } from "./motion.js";
+import { MARKS, NAMES, told } from "./motion.js";
 import { Player } from "./player.js";
 import { cell, expected } from "./quantities.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting */
 /** @typedef {any} Answer the result of `answer` in worker.js */
 
-/** @type {Record<string, string>} */
-const NAMES = { munk: "pymunk", mujoco: "MuJoCo" };
-/** @type {Record<string, number>} */
-const MARKS = { munk: 1, mujoco: 2 };
 const root = /** @type {HTMLElement} */ (document.getElementById("lesson"));
 const find = (/** @type {string} */ name) => /** @type {HTMLElement} */ (root.querySelector(name));
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -84,7 +80,8 @@ function run(play) {
   if (!busy) requestAnimationFrame(next);
 }
 
-const pause = () => new Promise((resolve) => setTimeout(resolve));
+/** Wait until the next picture is drawn: a long task would block the page. */
+const pause = () => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
 
 async function next() {
   if (!waiting || busy) return;
@@ -119,17 +116,18 @@ function stage({ drawing, motions }) {
 /** @param {Answer} answer @param {boolean} play @param {Record<string, string>} ways */
 async function show(answer, play, ways) {
   shown = answer;
-  const { motions, exact, lost } = answer;
+  const { motions, lost } = answer;
   player.stop();
   player.stage.outerHTML = stage(answer);
   const spring = motions.find((/** @type {any} */ { name }) => name === "mujoco")?.spring;
   find(".springs").textContent = springWords(spring, answer);
-  player.load({
-    ...answer, size: answer.drawing.size, truth: exact,
-    motions: motions.map((/** @type {any} */ motion) => ({ ...motion, name: NAMES[motion.name], mark: MARKS[motion.name] })),
-  });
-  await pause(); // the picture is drawn before the magnifier is computed
-  if (player.take) player.lens.load(player.take);
+  player.load(answer);
+  await pause();
+  player.chartErrors(answer);
+  await pause();
+  lens.load(answer);
+  await pause();
+  lens.scale();
   for (const name in NAMES) {
     const entry = find(`.legend .method-${MARKS[name]}`);
     const stored = motions.find((/** @type {any} */ one) => one.name === name)?.why;
@@ -145,7 +143,7 @@ async function show(answer, play, ways) {
   figure.classList.toggle("can-grab", Boolean(answer.mechanism));
   if (play && !calm.matches) player.play(true);
   else if (play) {
-    player.frame = player.stopAt;
+    player.frame = answer.playback.stopAt;
     player.show();
   }
 }
@@ -333,5 +331,4 @@ function begin() {
   Object.assign(window, { crosscheck: { ask, form, setting: () => form.setting(start) } });
 }
 
-document.documentElement.classList.add("js");
 begin();

@@ -4,17 +4,22 @@
 /**
  * @typedef {{name: string, first: number, second: number, firstPoint: number[], secondPoint: number[],
  *   line: number|null}} Joint a pin, or a slot of the first body along `line` [rad]
- * @typedef {{name: string, mark: number, pose: ArrayLike<number>, twist: ArrayLike<number>}} Motion
+ * @typedef {{pose: ArrayLike<number>, twist: ArrayLike<number>}} States
+ * @typedef {States & {name: "munk"|"mujoco", label: string, mark: number, errors: ArrayLike<number>, error: number}} Motion
  * @typedef {{name: string, at: ArrayLike<number|null>, force: ArrayLike<number|null>, partly?: boolean,
  *   contact?: boolean, normal?: (number|null)[],
  *   friction?: (number|null)[]}} Force
  * @typedef {{name: string, body: number, point: number[], angle: number}} Blade
  * @typedef {{t: ArrayLike<number>, bodies: string[], joints: Joint[], blades: Blade[], size: number,
- *   measure: "angle"|"position", truth: {pose: ArrayLike<number>, twist: ArrayLike<number>}, motions: Motion[],
+ *   measure: "angle"|"position", exact: States, motions: Motion[], gaps: number[], playback: import("./playback.js").Playback,
  *   forces: Force[], centre: number|null, traces: {body: number, point: number[]}[], window: number[]}} Take
  * @typedef {[number, number]} Point
  */
 
+/** @type {Record<string, string>} */
+export const NAMES = { munk: "pymunk", mujoco: "MuJoCo" };
+/** @type {Record<string, number>} */
+export const MARKS = { munk: 1, mujoco: 2 };
 export const UNITS = { angle: "rad", position: "m" };
 
 /** Return the pose [x, y, angle] at an instant, or NaN.
@@ -66,16 +71,26 @@ export function errors(truth, pose, bodies, frames) {
   return { angle, position };
 }
 
+/** Return the magnified joints: each pin and slot with its gap [m], each blade with its slip [m/s], as vectors.
+ * @param {Pick<Take, "joints"|"blades"|"bodies">} take
+ * @returns {{name: string, unit: string, at: (motion: States, frame: number) => number[]}[]} */
+export function gapsOf({ joints, blades, bodies: { length: bodies } }) {
+  return [
+    ...joints.map((joint) => ({
+      name: joint.name, unit: "m",
+      at: (/** @type {States} */ { pose }, /** @type {number} */ frame) => {
+        const [[ax, ay], [bx, by]] = ends(joint, pose, bodies, frame);
+        return [bx - ax, by - ay];
+      },
+    })),
+    ...blades.map((blade) => ({
+      name: blade.name, unit: "m/s", at: (/** @type {States} */ { pose, twist }, /** @type {number} */ frame) => slip(blade, pose, twist, bodies, frame),
+    })),
+  ];
+}
+
 /** Replace values of at least 1e6 by NaN. @param {Float64Array} pose */
 export const finite = (pose) => pose.map((value) => (Math.abs(value) < 1e6 ? value : NaN));
-
-/** Return the visible difference of two motions at every instant [m]; NaN after a method has failed.
- * @param {ArrayLike<number|null>} truth @param {ArrayLike<number|null>} pose @param {number} bodies
- * @param {number} frames @param {number} size */
-export function seen(truth, pose, bodies, frames, size) {
-  const { angle, position } = errors(truth, pose, bodies, frames);
-  return position.map((moved, frame) => moved + 0.5 * size * Math.sin(Math.min(angle[frame], Math.PI) / 2));
-}
 
 /** Return the velocity across a blade at its point, as a vector [m/s]. @param {Blade} blade
  * @param {ArrayLike<number>} pose @param {ArrayLike<number>} twist @param {number} bodies @param {number} frame @returns {Point} */
@@ -93,6 +108,9 @@ export function slip({ body, point, angle }, pose, twist, bodies, frame) {
 export function instantCentre([x, y], [vx, vy, rate]) {
   return Math.abs(rate) < 1e-9 ? null : [x - vy / rate, y + vx / rate];
 }
+
+/** Format a whole number with commas. Number.toLocaleString takes 5 ms for its first number. @param {number} value */
+export const grouped = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, ",");
 
 /** Format a number with two digits; a small or large number has a power of ten. @param {number} value */
 export function told(value) {

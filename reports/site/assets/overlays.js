@@ -88,7 +88,7 @@ function drawCentre({ take, frame, overlay, width }) {
   const bodies = take.bodies.length;
   const size = 0.012 * width;
   let remark = "";
-  for (const [index, { pose, twist }] of [...take.motions, take.truth].entries()) {
+  for (const [index, { pose, twist }] of [...take.motions, take.exact].entries()) {
     const now = poseAt(pose, bodies, frame, body);
     const centre = instantCentre(now, poseAt(twist, bodies, frame, body));
     const own = take.motions[index];

@@ -3,16 +3,10 @@
 
 import { errorChart, svg } from "./chart.js";
 import { Lens } from "./lens.js";
-import { UNITS, errors, placed, poseAt, seen, told } from "./motion.js";
+import { UNITS, placed, poseAt, told } from "./motion.js";
 import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
-
-const SHORTEST = 5; // shortest duration of a playback [s]; shorter motions are shown in slow motion
-const GROWING = 3; // factor of slow motion at the fastest growth of the visible difference
-const FACTORS = [1000, 500, 200, 100, 50, 20, 10, 5, 2]; // of enlarged differences
-const VISIBLE = 0.15; // size of the largest enlarged difference, relative to the mechanism
-const SLOWER = [1, 2, 5, 10, 20, 50, 100];
 
 /** @param {Element} element @param {number} x @param {number} y @param {number} angle [rad] */
 const put = (element, x, y, angle) => element.setAttribute("transform", `translate(${x} ${y}) rotate(${(angle * 180) / Math.PI})`);
@@ -45,13 +39,8 @@ export class Player {
     this.take = null;
     this.frame = 0;
     this.playing = false;
-    this.stopAt = 0; // the frame with the largest visible difference
-    this.slower = 1;
-    /** @type {number[]} when each frame is shown [s], from the first on */
-    this.schedule = [];
     /** @type {(time: number) => void} */
     this.mark = () => {};
-    this.enlarged = 1; // factor of the drawn differences from the exact motion
     /** @type {ArrayLike<number>[]} the drawn poses of each motion, and the exact ones */
     this.drawn = [];
     for (const box of this.boxes) box.addEventListener("change", () => this.draw());
@@ -81,7 +70,13 @@ export class Player {
       if (row) row.hidden = !there;
     }
     this.lens.take = null; // loaded by its own task
-    this.measure(take);
+    const { enlarged } = take.playback;
+    for (const box of this.boxes.filter(({ value }) => value === "enlarged")) {
+      box.disabled = enlarged === 1;
+      const label = /** @type {HTMLElement} */ (box.closest("label"));
+      label.hidden = box.disabled;
+      /** @type {HTMLElement} */ (label.querySelector("span")).textContent = String(enlarged);
+    }
     this.draw();
   }
 
@@ -89,8 +84,8 @@ export class Player {
   draw() {
     const { take } = this;
     if (!take) return;
-    const factor = this.on("enlarged") ? this.enlarged : 1;
-    const exact = take.truth.pose;
+    const factor = this.on("enlarged") ? take.playback.enlarged : 1;
+    const exact = take.exact.pose;
     const pose = (/** @type {ArrayLike<number>} */ own) => (factor === 1 ? own : Float64Array.from(own, (value, k) => exact[k] + factor * (value - exact[k])));
     this.drawn = [...take.motions.map((motion) => pose(motion.pose)), exact];
     this.lens.enlarged = factor;
@@ -100,41 +95,12 @@ export class Player {
     this.show();
   }
 
-  /** Show the errors of a take; compute the playback time of each frame and the last frame. @param {Take} take */
-  measure(take) {
-    const { bodies: { length: bodies }, t: { length: frames }, truth, window: [first, last] } = take;
-    const lines = take.motions.map(({ name, mark, pose }) => ({ name, mark, values: errors(truth.pose, pose, bodies, frames)[take.measure] }));
-    this.mark = errorChart(this.chart, take.t, lines, take.measure);
-    for (const { mark, values } of lines) {
+  /** Show the errors in the chart and in the legend. @param {Take} take */
+  chartErrors({ t, motions, measure }) {
+    this.mark = errorChart(this.chart, t, motions, measure);
+    for (const { mark, error } of motions) {
       const place = this.figure.querySelector(`.legend .method-${mark} .figure`);
-      if (place) place.textContent = `up to ${told(values.reduce((a, b) => Math.max(a, b), 0))} ${UNITS[take.measure]}`;
-    }
-    const apart = new Float64Array(frames);
-    for (const { pose } of take.motions) {
-      seen(truth.pose, pose, bodies, frames, take.size).forEach((value, frame) => (apart[frame] = Math.max(apart[frame], Number.isFinite(value) ? value : 0)));
-    }
-    const largest = apart.reduce((a, b) => Math.max(a, b), 0);
-    this.enlarged = largest > 0 ? (FACTORS.find((by) => by * largest <= VISIBLE * take.size) ?? 1) : 1;
-    for (const box of this.boxes.filter(({ value }) => value === "enlarged")) {
-      box.disabled = this.enlarged === 1;
-      const label = /** @type {HTMLElement} */ (box.closest("label"));
-      label.hidden = box.disabled;
-      /** @type {HTMLElement} */ (label.querySelector("span")).textContent = String(this.enlarged);
-    }
-    const far = apart.map((value) => Math.min(value, take.size));
-    this.stopAt = last;
-    for (let frame = last; frame >= first; frame--) if (far[frame] > far[this.stopAt]) this.stopAt = frame;
-    // If the largest difference is at the beginning, the motion is played to its end.
-    if (this.stopAt < first + 0.3 * (last - first)) this.stopAt = last;
-    const real = take.t[last] - take.t[first];
-    this.slower = SLOWER.find((by) => real * by >= SHORTEST) ?? 100;
-    const growth = Array.from(far, (value, frame) => Math.max(0, value - (far[frame - 1] ?? 0)));
-    const fastest = Math.max(...growth.slice(first), 1e-3 * take.size);
-    this.schedule = [];
-    let at = 0;
-    for (let frame = first; frame <= last; frame++) {
-      if (frame > first) at += (take.t[frame] - take.t[frame - 1]) * this.slower * (1 + ((GROWING - 1) * growth[frame]) / fastest);
-      this.schedule[frame] = at;
+      if (place) place.textContent = `up to ${told(error)} ${UNITS[measure]}`;
     }
   }
 
@@ -142,17 +108,18 @@ export class Player {
   play(anew) {
     if (!this.take) return;
     const [first, last] = this.take.window;
-    const end = anew ? this.stopAt : last;
+    const { schedule, stopAt } = this.take.playback;
+    const end = anew ? stopAt : last;
     if (anew || this.frame >= last) this.frame = first;
     this.playing = true;
     this.button.textContent = "Pause";
     this.button.setAttribute("aria-pressed", "true");
-    const begin = performance.now() / 1000 - this.schedule[this.frame];
+    const begin = performance.now() / 1000 - schedule[this.frame];
     const take = this.take;
     const step = (/** @type {number} */ now) => {
       if (!this.playing || this.take !== take) return;
       const passed = now / 1000 - begin;
-      while (this.frame < end && this.schedule[this.frame + 1] <= passed) this.frame++;
+      while (this.frame < end && schedule[this.frame + 1] <= passed) this.frame++;
       this.show();
       if (this.frame >= end) this.stop();
       else requestAnimationFrame(step);
@@ -185,7 +152,7 @@ export class Player {
     });
     this.stage.classList.toggle("paths", this.on("paths"));
     this.time.value = String(frame);
-    this.clock.textContent = `${take.t[frame].toFixed(3)} s${this.slower > 1 ? `, ${this.slower} × slower` : ""}`;
+    this.clock.textContent = `${take.t[frame].toFixed(3)} s${take.playback.slower > 1 ? `, ${take.playback.slower} × slower` : ""}`;
     this.time.setAttribute("aria-valuetext", this.clock.textContent);
     this.mark(take.t[frame]);
     const overlay = /** @type {SVGGElement} */ (this.stage.querySelector(".overlay"));
@@ -193,7 +160,7 @@ export class Player {
     const width = this.stage.viewBox.baseVal.width;
     const remarks = Object.entries(OVERLAYS).map(([name, { draw }]) => (this.on(name) ? draw({ take, frame, overlay, width }) : ""));
     this.lens.show(frame);
-    if (this.on("enlarged")) remarks.unshift(`The engines' differences from the exact motion are drawn ${this.enlarged} times as large.`);
+    if (this.on("enlarged")) remarks.unshift(`The engines' differences from the exact motion are drawn ${take.playback.enlarged} times as large.`);
     this.remark.textContent = remarks.filter(Boolean).join(" ");
   }
 
@@ -212,7 +179,7 @@ export class Player {
       const take = this.take;
       if (!take) return;
       const wanted = hand(event);
-      const near = take.bodies.map((_, body) => poseAt(take.truth.pose, take.bodies.length, this.frame, body)).flatMap((pose, body) => {
+      const near = take.bodies.map((_, body) => poseAt(take.exact.pose, take.bodies.length, this.frame, body)).flatMap((pose, body) => {
         const own = take.joints.flatMap(({ first, second, firstPoint, secondPoint }) => [...(first === body ? [firstPoint] : []), ...(second === body ? [secondPoint] : [])]);
         return [[0, 0], ...own].map((point) => ({ body, point, away: Math.hypot(...placed(pose, point).map((value, axis) => value - wanted[axis])) }));
       }).sort((a, b) => a.away - b.away)[0];

@@ -1,7 +1,7 @@
 // @ts-check
 /** Numbers of a motion that a lesson shows beside its errors; reports/site/lesson.py describes them. */
 
-import { ends, instantCentre, poseAt, told, UNITS } from "./motion.js";
+import { ends, grouped, instantCentre, poseAt, told, UNITS } from "./motion.js";
 
 /** @typedef {{kind: "gap"|"rates"|"bend"|"centre"|"contact"|"energy"|"friction", words: string, bodies: number[]}} Quantity
  * @typedef {{pose: ArrayLike<number>, twist: ArrayLike<number>}} States
@@ -84,7 +84,7 @@ export function cell(name, answer, before) {
 function ratio(error, old) {
   if (old === undefined || !(old > 0) || !(error > 0)) return "";
   const by = Math.max(error / old, old / error);
-  const times = Number(by.toPrecision(2)).toLocaleString("en");
+  const times = grouped(Number(by.toPrecision(2)));
   return by < 1.05 ? ", as before" : `, ${times} times ${error > old ? "as large" : "smaller"}`;
 }
 

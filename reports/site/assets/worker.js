@@ -3,7 +3,8 @@
 
 import { doubles, mechanismOf, missed, modelOf, runOf, truth } from "./live_data.js";
 import { load, runMujoco, runMunk } from "./live_engines.js";
-import { errors, finite } from "./motion.js";
+import { MARKS, NAMES, errors, finite, gapsOf } from "./motion.js";
+import { playback } from "./playback.js";
 import { measured } from "./quantities.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting @typedef {import("./live_data.js").Name} Name
@@ -40,6 +41,8 @@ async function answer(setting, engines, quantities) {
   const exact = truth(run);
   /** @type {any[]} */
   const motions = [];
+  /** @type {ReturnType<typeof errors>[]} */
+  const all = [];
   /** @type {Record<string, string>} */
   const lost = {};
   for (const name of /** @type {Name[]} */ (["munk", "mujoco"])) {
@@ -52,30 +55,34 @@ async function answer(setting, engines, quantities) {
     const begin = performance.now();
     const found = kept && why ? { pose: kept[0], twist: kept[1] } : name === "munk" ? runMunk(engines.munk, run) : runMujoco(engines.mujoco, run);
     const pose = finite(found.pose);
+    const wrong = errors(exact.pose, pose, scene.bodies.length, run.samples + 1);
+    all.push(wrong);
     motions.push({
-      ...found, name, pose, milliseconds: performance.now() - begin, why: kept ? why : "",
+      ...found, name, label: NAMES[name], mark: MARKS[name], pose, milliseconds: performance.now() - begin, why: kept ? why : "",
       apart: kept && !why ? pose.reduce((most, value, index) => Math.max(most, Math.abs(value - kept[0][index])), 0) : null,
-      error: errors(exact.pose, pose, scene.bodies.length, run.samples + 1)[scene.measure].reduce((a, b) => Math.max(a, b), 0),
+      errors: wrong[scene.measure], error: wrong[scene.measure].reduce((a, b) => Math.max(a, b), 0),
     });
   }
-  const { measure, bodies, window, frames, centre, versions } = scene;
-  const stretch = run.samples / frames;
+  const { measure, bodies, centre, versions } = scene;
+  const { drawing, blades, traces, joints } = run.at;
   const taken = {
-    exact, joints: run.at.joints,
+    exact, joints,
     forces: exact.computed ? exact.forces : run.at.forces,
     inertia: run.at.inertia, gravity: run.at.gravity,
-    window: window.map((frame) => Math.round(frame * stretch)),
+    window: scene.window.map((frame) => Math.round((frame * run.samples) / scene.frames)),
     t: Float64Array.from({ length: run.samples + 1 }, (_, index) => index * run.every * run.step),
   };
+  const largest = (/** @type {ReturnType<typeof gapsOf>[number]} */ { at }) => motions.reduce((most, motion) =>
+    taken.t.reduce((/** @type {number} */ a, _, frame) => Math.max(a, Math.hypot(...at(motion, frame)) || 0), most), 0);
   return {
-    ...taken, measure, bodies, centre, versions, motions, lost,
+    ...taken, measure, bodies, centre, versions, motions, lost, drawing, blades, traces, size: drawing.size,
+    playback: playback(taken.t, taken.window, drawing.size, all), gaps: gapsOf({ joints, blades, bodies }).map(largest),
     quantities: quantities.map((each) => ({
       ...each,
       found: Object.fromEntries([["exact", exact], ...motions.map((motion) => [motion.name, motion])].map(([name, states]) =>
         [name, measured(each, { ...taken, bodies: bodies.length }, states)])),
     })),
     own: Object.assign({}, ...motions.map(({ own }) => own)), // settings that the methods choose
-    drawing: run.at.drawing, blades: run.at.blades, traces: run.at.traces,
     mechanism: mechanismOf(run), release: engines.mujoco?.mj_versionString() ?? "",
     // Sliders without an effect on this model are disabled.
     idle: [...modelOf(run, "munk").idle, ...modelOf(run, "mujoco").idle],
