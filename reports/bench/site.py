@@ -117,10 +117,11 @@ def _measure_longest_task(browser: Any, address: str) -> float:
         page.goto(address)
     events = json.loads(browser.stop_tracing())["traceEvents"]
     context.close()
-    tasks: dict[int, list[int]] = {
-        event["pid"]: [] for event in events if event.get("args", {}).get("name") == "CrRendererMain"
+    tasks: dict[tuple[int, int], list[int]] = {
+        (event["pid"], event["tid"]): [] for event in events if event.get("args", {}).get("name") == "CrRendererMain"
     }
     for event in events:
-        if event["name"] == "RunTask" and event["pid"] in tasks:
-            tasks[event["pid"]].append(event.get("tdur", 0))
+        thread = event["pid"], event["tid"]
+        if event["name"] == "RunTask" and thread in tasks:
+            tasks[thread].append(event.get("tdur", 0))
     return max(max(tasks.values(), key=len))  # the browser keeps an idle process for the next page
