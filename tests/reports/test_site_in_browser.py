@@ -289,6 +289,30 @@ def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):
     page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('error_bias 0 ')")
 
 
+def test_an_answered_experiment_shows_its_run_again_when_the_reader_returns(opened):
+    page = opened("lessons/four_bar.html", reduced_motion="reduce")
+    page.wait_for_selector("#lesson.ready")
+    page.locator("#part-3 .answers [data-right]").click()
+    page.wait_for_selector("#part-3 .compared:not([hidden])")
+    tenth = "document.querySelector('#part-3 .measured').textContent && crosscheck.form.words('steps') === '0.5 ms'"
+    page.wait_for_function(tenth)
+    page.mouse.move(300, 400)
+    for part in (4, 3):
+        for _ in range(60):
+            away = page.locator(f"#part-{part} h2").bounding_box()["y"] - 120
+            if abs(away) < 60:
+                break
+            page.mouse.wheel(0, np.clip(away, -150, 150))
+            page.wait_for_timeout(50)
+        page.wait_for_selector(f"#part-{part}.shown")
+        assert page.evaluate(tenth) == (part == 3)
+    # The keys Home and End select the first and the last value.
+    number = page.locator("#part-3 .drag[data-name=timeConstant]")
+    number.focus()
+    page.keyboard.press("End")
+    assert number.inner_text() == "50 ms"
+
+
 @pytest.mark.parametrize(
     ("blocked", "place", "words"),
     [
@@ -386,6 +410,15 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
             page.mouse.down()
     page.mouse.up()
     assert "The moving shape rolls on the fixed one" in page.inner_text(".cam .count")
+    for index in range(41):  # a path without symmetry
+        angle, radius = index * np.pi / 20, 80 + 12 * np.sin(index * np.pi / 10) + 6 * np.cos(3 * index * np.pi / 20)
+        page.mouse.move(x + radius * np.cos(angle), y - radius * np.sin(angle))
+        if index == 0:
+            page.mouse.down()
+    page.mouse.up()
+    assert page.locator(".widget select").input_value() != "-1"
+    assert "crosses itself" not in page.inner_text(".cam .count")
+    page.get_by_label("the body turns").select_option("once")
     page.locator("[data-motion=Ellipse]").click()
     for kind in ("svg", "dxf"):
         with page.expect_download() as download:
@@ -413,6 +446,7 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
 def test_a_motion_about_one_point_gives_no_shapes(opened, lesson):
     page = opened(f"lessons/{lesson}.html", viewport=TALL)
     page.locator("[data-motion=Circle]").click()
+    assert page.locator(".widget select").input_value() != "1"
     page.get_by_label("the body turns").select_option("once")  # the page has selected a number that gives two shapes
     assert "only turns about one fixed point" in page.inner_text(".cam .count")
     assert page.locator("[data-file=dxf]").is_disabled()
