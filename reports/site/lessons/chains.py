@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reference.scenes.person import SEGMENT_NAMES, OneFoot, TwoFeet
 from reports.site.lesson import BOTH, Claim, Experiment, Guess, Lesson
-from reports.site.lessons.linkages import PENDULUM
+from reports.site.lessons.linkages import JOINTS_OPEN, PENDULUM
 from reports.site.live.sliders import Live, Point
 
 _PERSON = OneFoot()
@@ -57,9 +57,10 @@ CHAINS = Lesson(
         Experiment(
             "on two feet",
             after=BOTH,
-            claims=(Claim("mujoco", most=1e-3), Claim("munk", 0.7, 1.1)),
+            claims=(Claim("mujoco", most=1e-3), Claim("munk", 0.7, 1.1), Claim("munk", most=0.1, of="gap")),
             section="Which setting for which accuracy",
             guesses=(Guess(times={"munk": 0.1, "mujoco": 0.1}), Guess(times={"munk": 1e-3, "mujoco": 1.0}), Guess()),
+            quantities=(JOINTS_OPEN,),
         ),
     ),
 )
