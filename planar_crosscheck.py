@@ -121,11 +121,11 @@ def run(
     scenes: names of scenes or pages; if empty, all scenes. settings: changed parameters of the scenes. every: numbers
     of steps between two samples. steps: step sizes [s]. Raises ValueError.
     """
-    from reports.cli.run import Selection, run_grid
+    from reports.cli.run import run_grid, select
 
     names = (scenes,) if isinstance(scenes, str) else tuple(scenes)
     numbers = tuple(f"{name}={value!r}" for name, value in (settings or {}).items())
-    chosen = Selection(names, engine, variant, numbers, full, tuple(every), tuple(steps))
+    chosen = select(names, engine, variant, numbers, full, every, steps)
     return run_grid(chosen, Path(results), workers, fresh)
 
 

@@ -7,6 +7,7 @@ import multiprocessing
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -212,32 +213,27 @@ def _settings(words: Sequence[str]) -> dict[str, str]:
     return out
 
 
-@dataclass(frozen=True)
-class ReferenceTrial:
-    """A job that loads a reference in a worker and makes the same calls as a command."""
-
-    motion: bool  # Whether the motion of a scene is computed too.
-
-    def __call__(self, reference: Reference) -> str:
-        """The reason why the reference can't be used, or an empty text."""
-        try:
-            for value in reference.values():
-                # A command needs a hashable and printable value that is equal to itself.
-                if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
-                    raise ValueError("it is not equal to itself")
-                is_scene = isinstance(value, Scene)
-                if is_scene:
-                    value.mechanism()
-                for scene in (value,) if is_scene else catalogue.SCENES:
-                    for engine in registry.VARIANTS if is_scene else (value,):
-                        with suppress(BadInput):  # An error of the cost is reported when the cost is needed.
-                            estimated_cost(Cell(scene, engine, 1))
-                if is_scene and self.motion:
-                    with suppress(ValueError):  # A page reports that the exact motion is refused.
-                        value.motion(np.linspace(0.0, value.duration, value.samples + 1))
-        except ValueError as reason:
-            return str(reason)
-        return ""
+def trial(motion: bool, reference: Reference) -> str:
+    """The reason why a reference can't be used, or an empty text. A worker makes the same calls as a command. motion:
+    whether the motion of a scene is computed too."""
+    try:
+        for value in reference.values():
+            # A command needs a hashable and printable value that is equal to itself.
+            if not (isinstance(hash(value), int) and value == value and isinstance(repr(value), str)):
+                raise ValueError("it is not equal to itself")
+            is_scene = isinstance(value, Scene)
+            if is_scene:
+                value.mechanism()
+            for scene in (value,) if is_scene else catalogue.SCENES:
+                for engine in registry.VARIANTS if is_scene else (value,):
+                    with suppress(BadInput):  # An error of the cost is reported when the cost is needed.
+                        estimated_cost(Cell(scene, engine, 1))
+            if is_scene and motion:
+                with suppress(ValueError):  # A page reports that the exact motion is refused.
+                    value.motion(np.linspace(0.0, value.duration, value.samples + 1))
+    except ValueError as reason:
+        return str(reason)
+    return ""
 
 
 def refused(references: Sequence[Reference], motion: bool = False) -> dict[Reference, str]:
@@ -247,7 +243,7 @@ def refused(references: Sequence[Reference], motion: bool = False) -> dict[Refer
         return {}
     sentences = {}
     for reference, result, _ in supervisor.supervise(
-        ReferenceTrial(motion), references, TIME_LIMIT, workers=1, wall=SLEEPING
+        partial(trial, motion), references, TIME_LIMIT, workers=1, wall=SLEEPING
     ):
         if isinstance(result, Loss):
             result = f"{reference.word}: its own code can't be used: {result.sentence}"

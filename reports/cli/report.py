@@ -9,7 +9,7 @@ import gc
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Annotated
 
@@ -165,22 +165,16 @@ def rendered(
     return {name: without_dead_links(text, is_page) if name.endswith(".md") else text for name, text in files.items()}
 
 
-@dataclass(frozen=True)
-class Drawing:
-    """A function that renders a page in a worker from (name, material)."""
-
-    references: tuple[str, ...]  # The stored references.
-    command: str
-
-    def __call__(self, item: tuple[str, Material]) -> dict[str, str]:
-        name, material = item
-        page = _pages(self.references)[name]  # A page has functions, which can't be pickled.
-        gc.disable()  # Collection would be slow, and a page leaves little garbage.
-        try:
-            return rendering.render_page(page, material, self.command)
-        finally:
-            gc.enable()
-            gc.collect()
+def draw_page(references: tuple[str, ...], command: str, item: tuple[str, Material]) -> dict[str, str]:
+    """The files of the page of (name, material), rendered in a worker. references: the stored references."""
+    name, material = item
+    page = _pages(references)[name]  # A page has functions, which can't be pickled.
+    gc.disable()  # Collection would be slow, and a page leaves little garbage.
+    try:
+        return rendering.render_page(page, material, command)
+    finally:
+        gc.enable()
+        gc.collect()
 
 
 @lru_cache(maxsize=1)
@@ -200,7 +194,8 @@ def drawn(material: Materials, references: Iterable[str], command: str, order: P
     pages = sorted(((page.name, stored) for page, stored in material.items()), key=size, reverse=True)
     files: dict[str, dict[str, str]] = {}
     with suppress(WorkersLost):
-        for (name, _), result, _ in supervise(Drawing(tuple(references), command), pages, PAGE_LIMIT, worker_count()):
+        job = partial(draw_page, tuple(references), command)
+        for (name, _), result, _ in supervise(job, pages, PAGE_LIMIT, worker_count()):
             if not isinstance(result, Loss):
                 files[name] = result
     return files

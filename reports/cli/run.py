@@ -5,16 +5,14 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import typer
 
 from engines import method_name
 from engines.lagrange.loading import COMPILING_NOTE, is_cold
-from reports.cli.known import Choice, choose
+from reports.cli.known import choose
 from reports.cli.options import (
     FOLDER,
     STORE,
@@ -65,9 +63,9 @@ def run(
 ) -> None:
     """Run the cells that are not stored yet. An interrupted run can be continued."""
     choose_device(device)
-    chosen = Selection(
-        tuple(scene or ()), engine, variant, tuple(settings or ()), full, tuple(every or ()), tuple(step or ()), limit
-    )
+    if not 0 < limit < float("inf"):
+        raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
+    chosen = select(scene or (), engine, variant, settings or (), full, every or (), step or ())
     items = chosen.items
     with telling(140, as_json, as_markdown) as console:
         with cluster.connect_cluster(scheduler) as crew, opened(results / STORE) as store:
@@ -85,71 +83,45 @@ def run(
         refuse_nothing_but_failures(rows)
 
 
-@dataclass(frozen=True)
-class Selection:
-    """The options of `crosscheck run` that choose cells. All properties may raise BadInput."""
+class Selected(NamedTuple):
+    cells: tuple[Cell, ...]
+    items: Sequence[Cell | Task]  # The cells, and the tasks of pages.
+    references: list[str]
+    left_out: list[tuple[Cell, str]]  # Cells of a named engine that are in the grid and are not run, with the reason.
 
-    scenes: tuple[str, ...] = ()  # Names of scenes or pages, or references. An empty tuple means all scenes.
-    engine: str | None = None
-    variant: str | None = None
-    settings: tuple[str, ...] = ()  # "NAME=VALUE" for parameters of the scenes.
-    full: bool = False
-    every: tuple[int, ...] = ()  # Selected numbers of steps between samples.
-    steps: tuple[float, ...] = ()  # Selected steps [s].
-    limit: float = TIME_LIMIT  # Limit of CPU seconds for a cell.
 
-    def __post_init__(self) -> None:
-        if not 0 < self.limit < float("inf"):
-            raise BadInput(f"--limit is {self.limit}; it must be a finite number of seconds greater than zero")
-
-    @cached_property
-    def choice(self) -> Choice:
-        return choose(self.scenes, self.engine, self.variant, self.settings)
-
-    @property
-    def references(self) -> list[str]:
-        return [reference.text() for reference in self.choice.known.references]
-
-    @property
-    def _alone(self) -> bool:
-        return bool(self.scenes) and not self.full
-
-    @cached_property
-    def cells(self) -> tuple[Cell, ...]:
-        scenes, engines, pages = self.choice.scenes, self.choice.engines, self.choice.known.pages
-        named = self.engine is not None
-        return choose_cells(scenes, engines, pages, self.full, self.every, self.steps, named=named, alone=self._alone)
-
-    @cached_property
-    def items(self) -> Sequence[Cell | Task]:
-        """The selected cells and tasks. A run with selected steps, and a quick run of named scenes, has no tasks."""
-        known, scenes = self.choice.known, self.choice.scenes
-        only_cells = self.every or self.steps or self._alone
-        tasks = () if only_cells else choose_tasks(scenes, self.choice.engines, known.pages, self.full)
-        if not (items := (*self.cells, *tasks)):
-            compared = (method for scene in scenes for method in grid_engines(scene, known.engines, known.pages))
-            methods = ", ".join(dict.fromkeys(map(method_name, compared)))
-            longer = "" if self.full else "; --full has what takes longer"
-            raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
-        return items
-
-    @property
-    def left_out(self) -> list[tuple[Cell, str]]:
-        """(cell, reason) for the cells of a named engine that are in the grid and are not run."""
-        if self.engine is None or self.every or self.steps:
-            return []
-        pages = self.choice.known.pages
-        return left_out(self.choice.scenes, self.choice.engines, pages, self.full, self.cells)
+def select(
+    scenes: Sequence[str] = (),
+    engine: str | None = None,
+    variant: str | None = None,
+    settings: Sequence[str] = (),
+    full: bool = False,
+    every: Sequence[int] = (),
+    steps: Sequence[float] = (),
+) -> Selected:
+    """What `crosscheck run` runs with these options. A run with selected steps [s], or with selected numbers `every` of
+    steps between samples, has no tasks, and neither has a quick run of named scenes. Raises BadInput."""
+    choice = choose(scenes, engine, variant, settings)
+    known, given = choice.known, (choice.scenes, choice.engines, choice.known.pages, full)
+    alone, is_named, at_steps = bool(scenes) and not full, engine is not None, bool(every or steps)
+    cells = choose_cells(*given, every, steps, named=is_named, alone=alone)
+    if not (items := (*cells, *(() if at_steps or alone else choose_tasks(*given)))):
+        compared = (method for scene in choice.scenes for method in grid_engines(scene, known.engines, known.pages))
+        methods = ", ".join(dict.fromkeys(map(method_name, compared)))
+        longer = "" if full else "; --full has what takes longer"
+        raise BadInput(f"nothing to run: pages compare these methods in what is named: {methods}{longer}")
+    omitted = left_out(*given, cells) if is_named and not at_steps else []
+    return Selected(cells, items, [reference.text() for reference in known.references], omitted)
 
 
 def run_grid(
-    chosen: Selection, results: Path = FOLDER, workers: int | None = None, fresh: bool = False
+    chosen: Selected, results: Path = FOLDER, workers: int | None = None, fresh: bool = False
 ) -> list[Measurement]:
     """The rows of the selected cells. Cells that are not stored in `results` are run. Raises BadInput."""
     by = cluster.pool(workers)
     with Store(results / STORE) as store:
         store.save_references(chosen.references)
-        run_into(store, chosen.items, fresh, chosen.limit, by.threads, supervised=by.supervise)
+        run_into(store, chosen.items, fresh, TIME_LIMIT, by.threads, supervised=by.supervise)
         rows = list(store.get(chosen.cells).values())
     refuse_without_motion(rows)
     return rows

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from engines.registry import ENGINES, OTHERS
 from reports.model.tasks import Answer
-from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+from reports.plots.theme import LIGHT, new_figure, settings, style_axes, svg
 from reports.run.store import Store
 from reports.search import plan
 from reports.search.chunk import (
@@ -39,7 +39,7 @@ AXIS_LEAST, AXIS_MOST = 1e-17, 1e2  # Limits of the axis, to which errors are cl
 ROW_INCHES = 0.24
 
 
-def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figure | None:
+def draw_distribution(cases: Sequence[CaseResult]) -> Figure | None:
     """A figure with a line for each subject from the median to the largest error of instants, or None without
     errors."""
     errors_by_subject: dict[str, list[float]] = {}
@@ -50,17 +50,17 @@ def draw_distribution(cases: Sequence[CaseResult], theme: Theme = LIGHT) -> Figu
     if not errors_by_subject:
         return None
     with settings():
-        figure = new_figure(0.9 + ROW_INCHES * len(errors_by_subject), theme, 7.0)
+        figure = new_figure(0.9 + ROW_INCHES * len(errors_by_subject), width=7.0)
         axes = figure.subplots()
-        style_axes(axes, theme)
+        style_axes(axes)
         axes.grid(False, axis="y")
         for row, errors in enumerate(errors_by_subject.values()):
             ordered = np.sort(np.clip(np.nan_to_num(errors, posinf=AXIS_MOST), AXIS_LEAST, AXIS_MOST))
             median, most = ordered[len(ordered) // 2], ordered[math.ceil(0.99 * (len(ordered) - 1))]
-            axes.plot([median, ordered[-1]], [row, row], color=theme.first, linewidth=1.2)
+            axes.plot([median, ordered[-1]], [row, row], color=LIGHT.first, linewidth=1.2)
             for value, mark, size in ((median, "o", 5), (most, "|", 8), (ordered[-1], ".", 6)):
-                axes.plot([value], [row], mark, color=theme.first, markersize=size)
-        axes.axvline(1e-9, color=theme.quiet, linewidth=0.8, linestyle=(0, (4, 3)))
+                axes.plot([value], [row], mark, color=LIGHT.first, markersize=size)
+        axes.axvline(1e-9, color=LIGHT.quiet, linewidth=0.8, linestyle=(0, (4, 3)))
         axes.set_yticks(
             range(len(errors_by_subject)), [f"{name} ({len(errors)})" for name, errors in errors_by_subject.items()]
         )

@@ -44,10 +44,10 @@ def seed_origin() -> tuple[str, str]:
     return SOURCES_RULE, digest(b"\0".join(path.read_bytes() for path in files), 64)
 
 
-def published_seeds(many: int = len(SEED_DECADES)) -> tuple[int, ...]:
+def published_seeds() -> tuple[int, ...]:
     """Seeds from the SHA-256 of "ORIGIN NUMBER" with numbers from 1. A seed is half of the first eight hexadecimal
     digits."""
-    texts = (f"{seed_origin()[1]} {number}" for number in range(1, many + 1))
+    texts = (f"{seed_origin()[1]} {number}" for number in range(1, len(SEED_DECADES) + 1))
     return tuple(int(digest(text, SHORT), 16) // 2 for text in texts)
 
 

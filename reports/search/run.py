@@ -51,19 +51,14 @@ def run_search(
     subjects: Sequence[Subject],
     cases: int = DEFAULT_CASES,
     seed: int | None = None,
-    kinds: Sequence[str] = (),
-    decades: int = 0,
-    oracles: tuple[str, ...] = DEFAULT_ORACLES,
     seconds: float | None = None,
     workers: int | None = None,
 ) -> tuple[list[CaseResult], Mapping[Shrink, Answer]]:
-    """Results of `cases` cases of each subject, and reduced findings. Results and findings are stored in `folder`.
-
-    `seed`: the seed, or None for the first published seed. `kinds`: an empty sequence selects all kinds. `seconds`:
-    time limit, after which no task is started.
-    """
-    kinds = kinds or tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
-    chunks = make_chunks(subjects, plan.published_seeds()[0] if seed is None else seed, cases, kinds, decades, oracles)
+    """Results of `cases` cases of each subject, and reduced findings. Results and findings are stored in `folder`. By
+    default `seed` is the first published seed. `seconds`: time limit, after which no task is started."""
+    kinds = tuple(dict.fromkeys(kind for subject in subjects for kind in subject.kinds))
+    seed = plan.published_seeds()[0] if seed is None else seed
+    chunks = make_chunks(subjects, seed, cases, kinds, 0, DEFAULT_ORACLES)
     with Store(folder / STORE) as store:
         search = Search(store, pool(workers), seconds)
         results = search.run([chunks])

@@ -169,10 +169,9 @@ def _kind_of(result: OracleResult) -> str:
     return re.sub(r"'[^']*'|[0-9.e+-]+", "", result.words)
 
 
-def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> list[tuple[str, CaseResult]]:
-    """Pairs (check, case), at most `most` for each subject and check. Cases with few kinds of joints are preferred. Of
-    several cases with the same kinds, only the first is used.
-    """
+def choose_worst(cases: Iterable[CaseResult]) -> list[tuple[str, CaseResult]]:
+    """Pairs (check, case), at most FINDINGS_SHRUNK for each subject and check. Cases with few kinds of joints are
+    preferred. Of several cases with the same kinds, only the first is used."""
     by_check: dict[tuple[str, str], dict[tuple[str, ...], CaseResult]] = {}
     for case in cases:
         for check in case.result.faults[:1]:
@@ -180,7 +179,7 @@ def choose_worst(cases: Iterable[CaseResult], most: int = FINDINGS_SHRUNK) -> li
     return [
         (check, case)
         for (_, check), kinds in by_check.items()
-        for case in sorted(kinds.values(), key=lambda case: (len(case.kinds), case.number))[:most]
+        for case in sorted(kinds.values(), key=lambda case: (len(case.kinds), case.number))[:FINDINGS_SHRUNK]
     ]
 
 

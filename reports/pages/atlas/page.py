@@ -41,8 +41,8 @@ PREDICTIONS: Mapping[str, tuple[str, str, Any]] = {
 
 
 @cache
-def stored_columns(path: Path = RESULTS / FILE) -> tuple[StoredColumn, ...]:
-    return read(path)
+def stored_columns() -> tuple[StoredColumn, ...]:
+    return read(RESULTS / FILE)
 
 
 def columns_of(stability_map: StabilityMap) -> list[StoredColumn]:

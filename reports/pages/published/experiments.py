@@ -33,8 +33,9 @@ PUBLISHED = (3.554e-3, 4.189e-6, 1.519e-8)  # Relative drift of the energy at AC
 ACROBOT_START = 0.30488863  # rad; with this angle, RK4 has the drift PUBLISHED[0] at ACROBOT_STEPS[0].
 
 
-def acrobot(angle: float = ACROBOT_START) -> Mechanism:
-    """Two links of 1 m, 1 kg and 1 kg m^2 in line and at rest. The `angle` [rad] is 0 in the hanging pose."""
+def acrobot() -> Mechanism:
+    """Two links of 1 m, 1 kg and 1 kg m^2 in line and at rest. Their angle [rad] is 0 in the hanging pose."""
+    angle = ACROBOT_START
     along = np.array([math.sin(angle), -math.cos(angle)])
     bodies = tuple(
         Body(name, 1.0, 1.0, (*(distance * along).tolist(), angle), (0.0, 0.0, 0.0))
