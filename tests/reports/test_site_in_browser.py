@@ -195,6 +195,31 @@ def test_a_dragged_linkage_stays_closed(opened):
     assert other.evaluate(first) == pytest.approx(DrivenFourBar().mechanism().pose.ravel())
 
 
+def test_a_mechanism_whose_motion_is_stored_is_dragged_along_this_motion(opened):
+    page = opened("lessons/skate.html", reduced_motion="reduce")
+    page.wait_for_selector("#lesson.ready")
+    body, slider = page.locator(".motion.truth .body"), page.locator("figure .time input")
+
+    def place():
+        box = body.bounding_box()
+        return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    slider.press("Home")
+    targets = []
+    for _ in range(2):
+        for _ in range(6):
+            slider.press("ArrowRight")
+        targets.append((place(), slider.input_value()))
+    slider.press("Home")
+    page.mouse.move(*place())
+    page.mouse.down()
+    for target, frame in targets:
+        page.mouse.move(*target, steps=3)
+        assert abs(int(slider.input_value()) - int(frame)) <= 1  # a box is not centred at the centre of mass
+    page.mouse.up()
+    assert abs(int(slider.input_value()) - int(targets[-1][1])) <= 1
+
+
 def test_the_last_iteration_of_a_pymunk_step_is_the_result_of_the_step(running):
     answer = running("four_bar").evaluate(
         """async () => {

@@ -140,7 +140,7 @@ async function show(answer, play, ways) {
   root.classList.add("ready");
   find(".next").hidden = !motions.some((/** @type {any} */ { name, impulses }) => name === "munk" && impulses) || !answer.joints.length;
   find(".sweeps").hidden = true;
-  figure.classList.toggle("can-grab", Boolean(answer.mechanism));
+  figure.classList.add("can-grab");
   if (play && !calm.matches) player.play(true);
   else if (play) {
     player.frame = answer.playback.stopAt;

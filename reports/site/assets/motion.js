@@ -12,7 +12,8 @@
  * @typedef {{name: string, body: number, point: number[], angle: number}} Blade
  * @typedef {{t: ArrayLike<number>, bodies: string[], joints: Joint[], blades: Blade[], size: number,
  *   measure: "angle"|"position", exact: States, motions: Motion[], gaps: number[], playback: import("./playback.js").Playback,
- *   forces: Force[], centre: number|null, traces: {body: number, point: number[]}[], window: number[]}} Take
+ *   forces: Force[], centre: number|null, traces: {body: number, point: number[]}[], window: number[],
+ *   mechanism: object|null}} Take mechanism: the equations of a linkage, which the reader can drag anywhere
  * @typedef {[number, number]} Point
  */
 

@@ -164,7 +164,16 @@ export class Player {
     this.remark.textContent = remarks.filter(Boolean).join(" ");
   }
 
-  /** Let the reader drag the mechanism; `pull` gets the body, its point and the position of the pointer.
+  /** Return the frame near the shown one at which a body's point is nearest to the pointer. @param {Take} take @param {number} body @param {number[]} point @param {number[]} wanted */
+  nearest({ window: [first, last], exact, bodies }, body, point, wanted) {
+    const reach = Math.ceil((last - first) / 10); // a motion may return to a place, so distant frames do not count
+    const away = (/** @type {number} */ frame) => Math.hypot(...placed(poseAt(exact.pose, bodies.length, frame, body), point).map((value, axis) => value - wanted[axis]));
+    let best = this.frame;
+    for (let frame = Math.max(first, this.frame - reach); frame <= Math.min(last, this.frame + reach); frame++) if (away(frame) < away(best)) best = frame;
+    return best;
+  }
+
+  /** Let the reader drag a linkage anywhere, and another mechanism along its motion; `pull` gets the body, its point and the position of the pointer.
    * @param {(body: number, point: number[], wanted: number[]) => Float64Array|null} pull @param {() => void} release */
   grabbed(pull, release) {
     const frame_ = /** @type {HTMLElement} */ (this.figure.querySelector(".frame"));
@@ -183,7 +192,11 @@ export class Player {
         const own = take.joints.flatMap(({ first, second, firstPoint, secondPoint }) => [...(first === body ? [firstPoint] : []), ...(second === body ? [secondPoint] : [])]);
         return [[0, 0], ...own].map((point) => ({ body, point, away: Math.hypot(...placed(pose, point).map((value, axis) => value - wanted[axis])) }));
       }).sort((a, b) => a.away - b.away)[0];
-      if (near.away > 0.15 * take.size || !pull(near.body, near.point, wanted)) return;
+      if (take.mechanism ? near.away > 0.15 * take.size || !pull(near.body, near.point, wanted) : near.away > take.size) return;
+      if (!take.mechanism) { // the point of the body at the pointer
+        const [x, y, angle] = poseAt(take.exact.pose, take.bodies.length, this.frame, near.body);
+        near.point = placed([0, 0, -angle], [wanted[0] - x, wanted[1] - y]);
+      }
       this.stop();
       held = near;
       frame_.setPointerCapture(event.pointerId);
@@ -191,6 +204,11 @@ export class Player {
     });
     frame_.addEventListener("pointermove", (event) => {
       if (!held || !this.take) return;
+      if (!this.take.mechanism) {
+        this.frame = this.nearest(this.take, held.body, held.point, hand(event));
+        this.show();
+        return;
+      }
       const pose = pull(held.body, held.point, hand(event));
       if (!pose) return;
       for (const group of this.groups) {
@@ -199,7 +217,7 @@ export class Player {
       this.stage.querySelector(".overlay")?.replaceChildren();
     });
     const end = () => {
-      if (held) release();
+      if (held && this.take?.mechanism) release();
       held = null;
     };
     frame_.addEventListener("pointerup", end);
