@@ -67,6 +67,13 @@ def test_experiments_and_their_texts_use_existing_controls(lesson):
         assert set(numbers) <= set(live.controls()), part.heading
 
 
+def test_polygons_have_the_corners_that_lessons_state():
+    gears = dict(LIVE["gears: two gears"].munk)
+    labels = {label: int(label.split()[3]) for label in gears if label.startswith("a polygon of")}
+    corners = {sliders.SHIPPED: 64, sliders.DOCUMENTED: 512, **labels}
+    assert {label: method.contact.vertices for label, method in gears.items()} == corners
+
+
 def test_a_method_with_python_code_in_every_step_is_refused():
     sleigh = ChaplyginSleigh().mechanism()
     with pytest.raises(Unsupported, match="needs our code in every step"):
