@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import groupby
 from pathlib import Path
@@ -43,7 +43,7 @@ def conform(
         raise BadInput(sentence)
     with telling(150, as_json, as_markdown) as screen:
         broken = []
-        for method, results in asked(Named.here(engine, variant)):
+        for method, results in asked(Named(engine, variant)):
             name = method_name(method)
             screen.say(name)
             lines = []
@@ -95,11 +95,7 @@ class Named:
 
     engine: str
     variant: str | None
-    folder: str
-
-    @staticmethod
-    def here(engine: str, variant: str | None) -> Named:
-        return Named(engine, variant, os.getcwd())
+    folder: str = field(default_factory=os.getcwd)
 
     def engines(self) -> tuple[Engine, ...]:
         """The engines with this name. Raises BadInput if there are none."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 from engines import Regularisation
 from reference.scene import Scene
@@ -76,28 +76,22 @@ class CaseVerdict:
         return nearest(self.theory) if self.theory else None
 
 
-@dataclass(frozen=True)
-class JudgeRun:
-    """A job of the judge that computes a prediction, or errors with the regularisation of a method."""
-
+class JudgeRun(NamedTuple):
     scene: Scene
     soft: frozenset[SoftKind] | Regularisation
 
-    def __call__(self) -> Prediction | Mapping[str, float]:
-        if isinstance(self.soft, Regularisation):
-            return errors_as_soft(self.scene, self.soft)
-        return prediction(self.scene, self.soft)
 
-
-def call(job: JudgeRun) -> Any:
-    return job()
+def judged(job: JudgeRun) -> Prediction | Mapping[str, float]:
+    """The prediction for a scene, or its errors with the regularisation of a method."""
+    scene, soft = job
+    return errors_as_soft(scene, soft) if isinstance(soft, Regularisation) else prediction(scene, soft)
 
 
 def run_judge(jobs: Iterable[JudgeRun], workers: int) -> dict[JudgeRun, Any]:
     """Run the jobs in worker processes, beginning with the largest mechanisms. Raises RuntimeError if a job fails."""
     ordered = sorted(set(jobs), key=lambda job: -len(mechanism_of(job.scene).bodies))
     results: dict[JudgeRun, Any] = {}
-    for job, result, _ in supervise(call, ordered, JUDGE_LIMIT, workers):
+    for job, result, _ in supervise(judged, ordered, JUDGE_LIMIT, workers):
         if isinstance(result, Loss):
             raise RuntimeError(f"the judge on {job.scene.name}: {result.sentence}")
         results[job] = result

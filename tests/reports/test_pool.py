@@ -277,7 +277,7 @@ def test_a_check_of_conform_that_never_ends_fails_with_the_name_of_its_mechanism
             yield question, Loss(Outcome.TIMED_OUT, "did not end within 60 s of CPU time"), ""
 
     monkeypatch.setattr(conform_command, "supervise", hanging)
-    ((_, results),) = asked(Named.here("pymunk", "leapfrog"))
+    ((_, results),) = asked(Named("pymunk", "leapfrog"))
     failed = [result for _, result in results if result.status == "fails"]
     assert failed
     assert all("did not end within 60 s of CPU time" in result.sentence for result in failed)
