@@ -33,6 +33,7 @@ from reports.check.settings import (
     SMALLER_STEPS,
     SettingRun,
     SweepPlan,
+    a_tenth,
     cheapest,
     run_settings_sweep,
     runs_by_step,
@@ -177,7 +178,7 @@ class CheckResult:
     @property
     def decade(self) -> SettingRun | None:
         """The cheapest setting with at most a tenth of the error of the advised setting."""
-        return None if self.advised is None else cheapest(self.table, self.advised.error / 10)
+        return a_tenth(self.table, self.tolerance)
 
     @property
     def chaotic(self) -> bool:

@@ -90,7 +90,7 @@ def run_settings_sweep(
         if time.process_time() - begin + cost > plan.patience:
             continue
         for_parts = plan.goal is None and same_options[:1] == settings[:1] and len(same_options) <= SMALLER_STEPS
-        dear = plan.goal is None and cost > _cost_limit(settings, tolerance)
+        dear = plan.goal is None and (tenth := a_tenth(settings, tolerance)) is not None and cost > tenth.cost
         if (dear or _has_plateaued(same_options)) and not (all_wanted or for_parts):
             continue
         run = model.run(samples, every, change)
@@ -99,12 +99,6 @@ def run_settings_sweep(
     table = [done[index] for index in sorted(done)]
     front = pareto_front(table)
     return [replace(setting, front=setting in front) for setting in table]
-
-
-def _cost_limit(table: list[SettingRun], tolerance: float) -> float:
-    advised = cheapest(table, tolerance)
-    decade = None if advised is None else cheapest(table, advised.error / 10)
-    return float("inf") if decade is None else decade.cost
 
 
 def _quick_choice(changes: list[Change]) -> list[int]:
@@ -133,6 +127,12 @@ def cheapest(table: list[SettingRun], tolerance: float) -> SettingRun | None:
     return min(
         (setting for setting in table if setting.error <= tolerance), key=lambda setting: setting.cost, default=None
     )
+
+
+def a_tenth(settings: list[SettingRun], tolerance: float) -> SettingRun | None:
+    """The cheapest setting with at most a tenth of the error of the cheapest setting within the tolerance."""
+    advised = cheapest(settings, tolerance)
+    return None if advised is None else cheapest(settings, advised.error / 10)
 
 
 def pareto_front(table: list[SettingRun]) -> list[SettingRun]:
