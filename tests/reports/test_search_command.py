@@ -43,9 +43,7 @@ ENGINE = Fatal("euler", "projection")
 '''
 
 
-def test_findings_are_printed_reduced_written_and_shown_on_the_page(
-    here: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_findings_are_printed_reduced_written_and_shown_on_the_page(here, capfd):
     assert call(*FEW, "--seed", "1") == FINE
     message = capfd.readouterr().out
     assert "mujoco alone" in message
@@ -70,9 +68,7 @@ def test_findings_are_printed_reduced_written_and_shown_on_the_page(
     assert (here / "crosscheck-results" / "search_errors.svg").read_text().startswith("<?xml")
 
 
-def test_a_case_that_ends_its_process_is_a_finding_and_the_other_results_are_stored(
-    here: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_a_case_that_ends_its_process_is_a_finding_and_the_other_results_are_stored(here, capfd):
     (here / "fatal.py").write_text(FATAL)
     text = ("search", "--engine", "fatal.py", "--kinds", "pin", "--cases", "4", "--oracles", "relations")
     assert call(*text, "--workers", "1") == FINE
@@ -95,15 +91,13 @@ def test_a_case_that_ends_its_process_is_a_finding_and_the_other_results_are_sto
         (("--release", "latest"), "latest"),
     ],
 )
-def test_invalid_options_are_refused_in_one_line(
-    words: tuple[str, ...], names: str, here: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_invalid_options_are_refused_in_one_line(words, names, here, capfd):
     assert call("search", "--cases", "1", *words) == REFUSED
     assert names in one_line(capfd.readouterr().err)
     assert not (here / "crosscheck-results").exists()
 
 
-def test_fresh_seeds_are_drawn_until_the_time_limit_and_stored(here: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_fresh_seeds_are_drawn_until_the_time_limit_and_stored(here, capfd):
     command = ("--engine", "mujoco", "--variant", "alone", "--cases", "3", "--seconds", "0.1", "--workers", "1")
     assert call("search", "--fresh", *command) == FINE
     assert "cases were asked" in capfd.readouterr().out
@@ -113,9 +107,7 @@ def test_fresh_seeds_are_drawn_until_the_time_limit_and_stored(here: Path, capfd
     assert not seeds & {*plan.published_seeds()}
 
 
-def test_published_seeds_depend_on_the_last_commit_or_without_git_on_the_sources(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_published_seeds_depend_on_the_last_commit_or_without_git_on_the_sources(tmp_path, monkeypatch):
     (tmp_path / "reports").mkdir()
     monkeypatch.setattr(plan, "ROOT", tmp_path)
     results = []
@@ -134,7 +126,7 @@ def test_published_seeds_depend_on_the_last_commit_or_without_git_on_the_sources
     assert results[2][1][0] == int(hashlib.sha256(b"0123abcd 1").hexdigest()[:8], 16) // 2
 
 
-def test_the_published_chunks_have_the_published_seeds_and_every_installed_method() -> None:
+def test_the_published_chunks_have_the_published_seeds_and_every_installed_method():
     chunks = plan.published_chunks()
     assert {chunk.seed for chunk in chunks} == {*plan.published_seeds()}
     assert {chunk.decades for chunk in chunks} == {*plan.SEED_DECADES}
@@ -185,15 +177,13 @@ def cases_with(engine: Engine, kinds: tuple[str, ...], first: int = 0) -> list[R
     ],
     ids=lambda value: getattr(value, "name", None),
 )
-def test_the_difference_that_a_script_prints_falls_with_the_step(
-    engine: Engine, kinds: tuple[str, ...], falls: float, tmp_path: Path
-) -> None:
+def test_the_difference_that_a_script_prints_falls_with_the_step(engine, kinds, falls, tmp_path):
     coarse, fine = differences(script_of(engine, kinds, "motion", 0), tmp_path)
     assert fine < max(coarse / falls, 1e-9)
     assert coarse < 0.1
 
 
-def test_a_script_of_a_relation_prints_the_same_error_for_both_descriptions(tmp_path: Path) -> None:
+def test_a_script_of_a_relation_prints_the_same_error_for_both_descriptions(tmp_path):
     text = script_of(mujoco.TUNED, ("pin", "force"), "turned", relations.RELATIONS.index("turned"))
     assert "original" in text
     assert "turned: 5 steps" in text
@@ -210,20 +200,16 @@ def test_a_script_of_a_relation_prints_the_same_error_for_both_descriptions(tmp_
     ],
     ids=lambda value: getattr(value, "name", None),
 )
-def test_a_script_of_a_case_without_a_fault_prints_a_difference_at_rounding(
-    engine: Engine, kinds: tuple[str, ...], check: str, tmp_path: Path
-) -> None:
+def test_a_script_of_a_case_without_a_fault_prints_a_difference_at_rounding(engine, kinds, check, tmp_path):
     assert max(differences(script_of(engine, kinds, check, 3), tmp_path)) < 1e-9
 
 
-def test_a_method_with_our_code_in_every_step_and_an_engine_without_scripts_give_an_empty_script() -> None:
+def test_a_method_with_our_code_in_every_step_and_an_engine_without_scripts_give_an_empty_script():
     for engine, kinds in ((mujoco.EXTENDED, ("pin", "skate")), (exudyn.TUNED, ("pin",))):
         assert write_script(Adapted(engine), cases_with(engine, kinds)[0], "motion", 0) == ""
 
 
-def test_the_missing_velocity_term_of_curved_equalities_is_found_reduced_and_written_as_a_script(
-    tmp_path: Path,
-) -> None:
+def test_the_missing_velocity_term_of_curved_equalities_is_found_reduced_and_written_as_a_script(tmp_path):
     """MuJoCo up to 4.0.1 omits the velocity term. The reduced model has one equality and at most two bodies."""
     subject = Alone()
     models = ((n, mujoco_alone.draw_model(SEED, n, ("joint",))) for n in range(20))

@@ -158,7 +158,7 @@ ADAPTERS = [name for name in CONTROL_ENGINES if name != "mjx"]
         for part in range(PARTS)
     ],
 )
-def test_a_fault_of_a_millionth_is_found_in_every_adapter(name: str, part: int) -> None:
+def test_a_fault_of_a_millionth_is_found_in_every_adapter(name, part):
     if missing := next((engine.missing for engine in CONTROL_ENGINES[name] if engine.missing), ""):
         pytest.skip(missing)
     for fault in PLANTED_FAULTS[part::PARTS]:
@@ -171,13 +171,13 @@ def test_a_fault_of_a_millionth_is_found_in_every_adapter(name: str, part: int) 
             assert not result["built"] or name == "box2d", fault
 
 
-def test_mujoco_alone_obeys_the_law_with_connects_welds_and_gears() -> None:
+def test_mujoco_alone_obeys_the_law_with_connects_welds_and_gears():
     for number in range(25):
         model = mujoco_alone.draw_model(SEED, number, HINGED_KINDS)
         assert check_accelerations(model)["errors"]["acceleration"] < 1e-10
 
 
-def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> None:
+def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve():
     """For first = slope second + bend second^2, the term at second = 0 is 2 bend (rate of second)^2."""
     checked = 0
     for number in range(12):
@@ -193,7 +193,7 @@ def test_the_law_of_a_curved_tendon_is_the_second_derivative_of_its_curve() -> N
     assert checked >= 3
 
 
-def test_a_mass_error_of_a_millionth_is_found_beside_the_known_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mass_error_of_a_millionth_is_found_beside_the_known_fault(monkeypatch):
     """MuJoCo omits the velocity term of curved equalities in all these models."""
     cases = [mujoco_alone.draw_model(1, number, ("joint", "tendon")) for number in range(20)]
     moving = [case for case in cases if CURVED in check_accelerations(case)["errors"]]
@@ -211,7 +211,7 @@ def test_a_mass_error_of_a_millionth_is_found_beside_the_known_fault(monkeypatch
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("version", "most"), [("3.6.0", 20), ("4.0.0", 2000)])
-def test_the_fault_of_a_past_release_is_found(version: str, most: int) -> None:
+def test_the_fault_of_a_past_release_is_found(version, most):
     """MuJoCo 3.6.0 omits the velocity term of connects and welds. MuJoCo 4.0.0 factorises the Hessian of its Newton
     solver wrongly for some branching trees with a sparse Jacobian. Neither release gives a warning."""
     try:

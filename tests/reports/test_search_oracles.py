@@ -72,14 +72,14 @@ LINKED = ("pin", "rod", "gear", "weld")
     ],
     ids=lambda value: getattr(value, "variant", None),
 )
-def test_adapters_obey_the_law_that_they_declare(engine: Any, kinds: tuple[str, ...]) -> None:
+def test_adapters_obey_the_law_that_they_declare(engine, kinds):
     some = results(engine, kinds, 16)
     assert sum(bool(result.errors) for result in some) >= 5
     assert {check for result in some for check in result.faults} == set()
 
 
 @pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.slow) for part in range(1, 8))])
-def test_earlier_false_positives_are_no_findings(part: int) -> None:
+def test_earlier_false_positives_are_no_findings(part):
     """The errors in the cases of search_seeds.csv come from rounding, a declared compliance or a solver's tolerance."""
     rows = list(csv.DictReader((HERE / "search_seeds.csv").read_text(encoding="utf-8").splitlines()))
     judged = 0
@@ -96,7 +96,7 @@ def test_earlier_false_positives_are_no_findings(part: int) -> None:
 
 
 @pytest.mark.parametrize("path", FINDINGS, ids=lambda path: path.stem)
-def test_an_open_finding_still_fails_and_a_repaired_one_does_not(path: Path) -> None:
+def test_an_open_finding_still_fails_and_a_repaired_one_does_not(path):
     finding: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     assert finding["reason"].startswith(("upstream: ", "ours: "))
     subject = next(known for known in known_subjects(['["mujoco alone"]']) if known.name == finding["subject"])
@@ -104,7 +104,7 @@ def test_an_open_finding_still_fails_and_a_repaired_one_does_not(path: Path) -> 
     assert (finding["check"] in result.faults) == finding["open"], result
 
 
-def test_the_equations_of_motion_hold_to_rounding_for_masses_from_1e_13_to_1e9_kg() -> None:
+def test_the_equations_of_motion_hold_to_rounding_for_masses_from_1e_13_to_1e9_kg():
     """The residual of M (a - free) = J^T f is relative to the terms of each equation."""
     mechanism = build(Adapted(TUNED).draw(1199539626, 8, ALL_KINDS, 4))
     rows, inertias = mechanism.rows(mechanism.pose), mechanism.inertias.reshape(-1)
@@ -181,9 +181,7 @@ def _faster(monkeypatch: pytest.MonkeyPatch) -> None:
         (PYMUNK_TUNED, ("pin", "spring"), _faster, "velocity"),
     ],
 )
-def test_a_mistake_in_an_adapter_is_found(
-    engine: Engine, kinds: tuple[str, ...], mistake: Any, check: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_mistake_in_an_adapter_is_found(engine, kinds, mistake, check, monkeypatch):
     mistake(monkeypatch)
     assert check in faults(engine, kinds, 12)
 
@@ -209,16 +207,9 @@ def _softer(model: MuJoCoModel) -> None:
     ],
     ids=["inertia", "gravity depends on position", "softer row"],
 )
-def test_a_change_of_mujocos_model_is_found_in_cases_with_much_noise(
-    engine: Engine,
-    seed: int,
-    number: int,
-    decades: int,
-    oracle: str,
-    change: Callable[[MuJoCoModel], None],
-    check: str,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_change_of_mujocos_model_is_found_among_noise(
+    engine, seed, number, decades, oracle, change, check, monkeypatch
+):
     subject, right = Adapted(engine), mujoco_engine.build_model
     case = subject.draw(seed, number, ALL_KINDS, decades)
     assert subject.ask(case, number, (oracle,)).faults == ()
@@ -232,7 +223,7 @@ def test_a_change_of_mujocos_model_is_found_in_cases_with_much_noise(
     assert check in subject.ask(case, number, (oracle,)).faults
 
 
-def test_a_groove_off_the_centre_of_mass_fails_and_obeys_the_law_on_the_page_of_faults() -> None:
+def test_a_groove_off_the_centre_of_mass_fails_and_obeys_the_law_on_the_page_of_faults():
     cases = [plan.GROOVE_SUBJECT.draw(SEED, number, ("pin", "slot"), 0) for number in range(9)]
     result = [plan.GROOVE_SUBJECT.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
     assert sum(errors["velocity"][0] > 1e-3 for errors in result) >= 5
@@ -259,14 +250,14 @@ class Beside(EngineWrapper):
         return Spoiled(self.engine.build(mechanism, dt), off)
 
 
-def test_the_residual_of_a_solver_is_no_fault_if_the_engine_declares_a_stricter_one() -> None:
+def test_the_residual_of_a_solver_is_no_fault_if_the_engine_declares_a_stricter_one():
     engine, number = Lagrange("rk4", "projection"), RELATIONS.index("turned")
     for declares, expected in ((False, ("turned",)), (True, ())):
         subject = Adapted(Beside(engine, declares=declares))
         assert subject.ask(subject.draw(SEED, 3, ("pin",), 0), number, ("relations",)).faults == expected
 
 
-def test_a_constant_declared_compliance_skips_the_check_and_one_that_falls_with_the_step_does_not() -> None:
+def test_a_constant_declared_compliance_skips_the_check_and_one_that_falls_with_the_step_does_not():
     """The compliance of a loop of pins is constant in MuJoCo's default, and falls as the square of the step in
     "tuned"."""
     shipped, tuned = (results(engine, ("pin",), 8, "motions") for engine in (DEFAULT, TUNED))
@@ -293,7 +284,7 @@ class Boasting(Lagrange):
         return Spoiled(super().build(mechanism, dt), lambda run: replace(run, warnings=text))
 
 
-def test_an_error_that_does_not_fall_with_the_declared_order_is_found_unless_a_run_warns() -> None:
+def test_an_error_that_does_not_fall_with_the_declared_order_is_found_unless_a_run_warns():
     assert faults(Boasting("euler", "projection"), ("pin",), 3, "motions") & {"motion", "reactions"}
     assert faults(Lagrange("rk4", "projection"), ("pin",), 3, "motions") == set()
     for warns in ("fine", "coarse"):
@@ -302,7 +293,7 @@ def test_an_error_that_does_not_fall_with_the_declared_order_is_found_unless_a_r
             assert any("something is wrong" in reason for reason in result.skipped)
 
 
-def test_no_engine_is_compared_with_a_judge_that_misses_its_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_engine_is_compared_with_a_judge_that_misses_its_tolerance(monkeypatch):
     monkeypatch.setattr(motions, "TRUTH", Judge(tolerance=1e-2))
     monkeypatch.setattr(motions, "judge_motion", motions.judge_motion.__wrapped__)  # pyright: ignore[reportFunctionMemberAccess]
     for result in results(Boasting("euler", "projection"), ("pin",), 3, "motions"):
@@ -310,7 +301,7 @@ def test_no_engine_is_compared_with_a_judge_that_misses_its_tolerance(monkeypatc
         assert "the judge does not reach its tolerance of 1e-10" in result.skipped[0]
 
 
-def test_an_exception_of_an_engine_and_one_of_an_oracle_are_different_checks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exception_of_an_engine_and_one_of_an_oracle_are_different_checks(monkeypatch):
     def broken(*_: Any) -> Any:
         raise KeyError("body 7")
 
