@@ -28,8 +28,6 @@ class ForceGroup:
 
 @dataclass(frozen=True)
 class AppliedForces:
-    """The force elements of a mechanism with this number of `bodies`."""
-
     groups: tuple[ForceGroup, ...]
     bodies: int
     coupled: tuple[tuple[CoupledForce, Ends], ...] = ()
@@ -56,7 +54,6 @@ class AppliedForces:
 
     @property
     def dissipate(self) -> bool:
-        """Whether an element depends on velocities."""
         elements = (*(group.element for group in self.groups), *(element for element, _ in self.coupled))
         return any(element.dissipates for element in elements)
 

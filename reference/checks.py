@@ -180,8 +180,6 @@ def freeze(value: Value) -> Value:
 
 
 class cached_readonly(cached_property[Value]):
-    """A cached property whose arrays are read-only."""
-
     def __init__(self, function: Callable[[Any], Value]) -> None:
         super().__init__(lambda owner: freeze(function(owner)))
         self.__doc__ = function.__doc__

@@ -48,7 +48,6 @@ class Term(Valid):
         return self.factor * (np.cos(line) * x + np.sin(line) * y)
 
     def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
-        """The `value` of the term with one more axis (..., 1)."""
         return self.value(first, second)[..., None]
 
     def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:

@@ -62,7 +62,6 @@ class _Dissipative(_ForceOfTwo):
         return True
 
     def potential(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        """Zero (...) [J]."""
         return np.zeros_like(first[..., 2] + second[..., 2])
 
 
@@ -300,7 +299,6 @@ Ends = tuple[tuple[int, int], ...]  # indices of the first and the second body o
 
 
 def _inverse_mass(places: tuple[Place, ...], bodies: Bodies) -> float:
-    """The sum of the bodies' largest inverse effective masses [1/kg] at the points where the force acts."""
     ends = [(bodies[name], point) for name, point in places if name is not None]
     return sum(1 / body.mass + (x * x + y * y) / body.inertia for body, (x, y) in ends)
 

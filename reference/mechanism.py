@@ -257,7 +257,6 @@ class Mechanism(Valid):
 
     @cached_property
     def length_scale(self) -> float:
-        """The mechanism's length [m]: see `scales.length_scale`."""
         return length_scale(self.bodies, self.joints, self.forces)
 
     @cached_readonly
@@ -267,7 +266,6 @@ class Mechanism(Valid):
 
     @cached_property
     def time_scale(self) -> float:
-        """The mechanism's time [s]: see `scales.time_scale`."""
         return time_scale(self.length_scale, self.gravity, self.bodies, self.joints, self.forces)
 
 

@@ -140,7 +140,6 @@ class JointGroup:
     offset: float = 0.0
 
     def blocks(self, everything: NDArray[Any]) -> NDArray[Any]:
-        """Velocity rows (..., joints, size, 6) at poses of bodies and ground (..., bodies + 1, 3)."""
         return self.joint.rows(everything[..., self.first, :], everything[..., self.second, :])
 
     def places(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -195,7 +194,6 @@ class JointRows:
         return np.concatenate([pose, np.zeros((*pose.shape[:-2], 1, 3), dtype=pose.dtype)], axis=-2)
 
     def gap(self, pose: NDArray[Any], t: NDArray[Any]) -> NDArray[Any]:
-        """See `Mechanism.gap`."""
         everything = self.with_ground(pose)
         out = np.full((*everything.shape[:-2], self.count), np.nan, dtype=everything.dtype)
         for group in self.groups:
@@ -206,7 +204,6 @@ class JointRows:
         return out
 
     def dense(self, pose: NDArray[Any]) -> NDArray[Any]:
-        """J (..., rows, 3 bodies), see `Mechanism.rows`."""
         everything = self.with_ground(pose)
         leading = everything.shape[:-2]
         kind = np.result_type(everything, float)

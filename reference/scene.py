@@ -176,7 +176,6 @@ class Scene(Valid, ABC):
 
     @property
     def spacing(self) -> float:
-        """The time between samples [s]."""
         return self.duration / self.samples
 
 
@@ -201,7 +200,6 @@ class PlacedScene(Scene):
 
 @contextmanager
 def _named(owner: str, trouble: str) -> Iterator[None]:
-    """Raise NoMotion for failed arithmetic in the context; every message begins with `owner`."""
     try:
         yield
     except InvalidMechanism as reason:

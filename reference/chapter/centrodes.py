@@ -19,7 +19,7 @@ from reference.checks import LARGEST_COUNT, InvalidMechanism, Numbers, Positive,
 from reference.plane import perpendicular, rotated
 from reference.rolling.curves import Array
 from reference.rolling.kinematics import Rolling
-from reference.rolling.traced import FEWEST, STILL, Traced, spline
+from reference.rolling.open_curves import FEWEST, STILL, Traced, spline
 from reference.trajectory import Trajectory
 from reference.validators import NOT_FINITE, from_to, of_shape
 
@@ -73,7 +73,6 @@ class Centrodes(Valid):
 
     @property
     def theta(self) -> Array:
-        """Rotation (n,) [rad], increasing."""
         return self.pose[:, 2]
 
     @cached_property
@@ -93,7 +92,6 @@ class Centrodes(Valid):
 
     @property
     def body_curvature(self) -> Array:
-        """curvature_B (n,) [1/m]."""
         return self.body_curve.curvature_of(-self.theta)
 
     @property
@@ -236,7 +234,6 @@ class Shapes(Valid):
 
 @validated
 def shapes_of(motion: Centrodes, points: Points = 400) -> Shapes:
-    """The two shapes of centrodes, with `points` points each (at least 2)."""
     space, body = motion.space_curve, motion.body_curve
     arcs = np.linspace(0.0, space.limits[1], points)
     theta = space.parameter(arcs)

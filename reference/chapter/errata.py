@@ -33,7 +33,6 @@ class Values:
 
     @property
     def miss(self) -> float:
-        """The largest error of the printed formula, in the unit of the values."""
         return float(np.abs(self.printed - self.decides).max())
 
     @property
@@ -67,13 +66,10 @@ def closed_form(theta: float) -> tuple[float, float]:
 
 
 @validated
-def integrated(theta: float, tolerance: Positive = 1e-3) -> Array:
-    """beta and phi (2,) [rad] by integration of the printed rates.
-
-    The chapter states no tolerance; 1e-3 is the default of common packages.
-    """
-    span, atol = (START_ANGLES[0], theta), 1e-3 * tolerance
-    return solve_ivp(lambda at, state: rates(at, *state), span, START_ANGLES[1:], rtol=tolerance, atol=atol).y[:, -1]
+def integrated(theta: float) -> Array:
+    """beta and phi (2,) [rad] by integration of the printed rates, with the default tolerance of common packages."""
+    span = START_ANGLES[0], theta
+    return solve_ivp(lambda at, state: rates(at, *state), span, START_ANGLES[1:], rtol=1e-3, atol=1e-6).y[:, -1]
 
 
 def acceleration_of_g(
@@ -165,8 +161,6 @@ PENDULUM_SLIPS: dict[int, tuple[int, Callable[[BarState], Array]]] = {
 
 @dataclass(frozen=True)
 class TwoPoints:
-    """Results (2,) of problems 18.5.1 [m/s] and 18.5.2 [m/s^2] for A, for B relative to A, and for B."""
-
     a: Array
     b_relative_to_a: Array
     b: Array

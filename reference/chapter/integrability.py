@@ -25,7 +25,6 @@ from reference.validators import of_shape
 
 Array = NDArray[np.float64]
 Place = Annotated[Array, of_shape("coordinates")]
-Pose = Annotated[Array, of_shape("bodies", 3)]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
 
 # Derivatives of brackets are computed by Cauchy's formula on a circle. The error is about
@@ -83,7 +82,6 @@ def is_integrable(rows: Rows, place: Place) -> bool:
 
 
 def _along(field: Rows, place: NDArray[Any], direction: NDArray[Any]) -> NDArray[Any]:
-    """The derivative of an analytic field at places (..., coordinates) along directions (..., coordinates)."""
     turns = np.exp(2j * np.pi * np.arange(CIRCLE_SAMPLES) / CIRCLE_SAMPLES)
     circle = place[..., None, :] + CIRCLE_RADIUS * turns[:, None] * direction[..., None, :]
     return np.einsum("...pi,p->...i", field(circle), 1 / turns) / (CIRCLE_SAMPLES * CIRCLE_RADIUS)
@@ -168,26 +166,22 @@ def mechanism_rows(mechanism: Mechanism) -> Rows:
     return rows
 
 
-@validated
-def mechanism_place(mechanism: Mechanism, pose: Pose | None = None) -> Array:
-    """The coordinates of `mechanism_rows` for a pose (bodies, 3), by default the start."""
-    pose = mechanism.pose if pose is None else pose
-    return np.append((pose / mechanism.pose_unit).ravel(), 0.0)
+def _start_of(mechanism: Mechanism) -> Array:
+    return np.append((mechanism.pose / mechanism.pose_unit).ravel(), 0.0)
 
 
 @validated
-def mechanism_is_integrable(mechanism: Mechanism, pose: Pose | None = None) -> bool:
-    """Whether all rows together are integrable near a pose, by default the start."""
-    return is_integrable(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
+def mechanism_is_integrable(mechanism: Mechanism) -> bool:
+    return is_integrable(mechanism_rows(mechanism), _start_of(mechanism))
 
 
 @validated
-def freedoms_by_brackets(mechanism: Mechanism, pose: Pose | None = None) -> tuple[int, ...]:
+def freedoms_by_brackets(mechanism: Mechanism) -> tuple[int, ...]:
     """The `growth` of a mechanism's freedoms, from the velocity freedoms to the configuration freedoms.
 
     This is a check of `Mechanism.degrees_of_freedom`, since it does not use `holonomic`. A car with locked steering has
     one freedom of velocity and follows one curve, so the skates are integrable together. `degrees_of_freedom` counts
     four freedoms of configuration for this car, by the classes of its joints.
     """
-    dimensions = growth(mechanism_rows(mechanism), mechanism_place(mechanism, pose))
+    dimensions = growth(mechanism_rows(mechanism), _start_of(mechanism))
     return tuple(dimension - 1 for dimension in dimensions)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.chapter.integrability import Place, exterior_derivatives
-from reference.checks import Count, InvalidMechanism, Positive, Valid, validated
+from reference.checks import InvalidMechanism, Positive, Valid, validated
 from reference.joints import Skate, Triple
 from reference.numerics.calculus import derivative
 
@@ -26,7 +26,7 @@ BodyRow = tuple[float, float, float]  # (a, b, c) [1, 1, m]
 
 
 @validated
-def skate_of(row: BodyRow, body: str = "body") -> Skate | None:
+def skate_of(row: BodyRow) -> Skate | None:
     """The skate with the row (a, b, c) in the body's axes, or None for a row that constrains only rotation (a = b = 0).
 
     Raises InvalidMechanism for a row of zeros.
@@ -38,7 +38,7 @@ def skate_of(row: BodyRow, body: str = "body") -> Skate | None:
             raise InvalidMechanism(f"skate: row is {row}; one of its three numbers must differ from zero")
         return None
     a, b, c = a / size, b / size, c / size
-    return Skate("skate", None, body, (c * b, -c * a), math.atan2(-a, b))
+    return Skate("skate", None, "body", (c * b, -c * a), math.atan2(-a, b))
 
 
 @validated
@@ -111,7 +111,6 @@ def park(start: Triple, goal: Triple, backwards: bool = True) -> tuple[Move, Mov
 
 @validated
 def stops(start: Triple, moves: tuple[Move, ...]) -> Array:
-    """The poses (moves + 1, 3) at the start and after every move."""
     pose = np.array(start, dtype=float)
     out = [pose]
     for move in moves:
@@ -124,10 +123,10 @@ def stops(start: Triple, moves: tuple[Move, ...]) -> Array:
 
 
 @validated
-def trace(start: Triple, moves: tuple[Move, ...], samples: Count = 16) -> Array:
-    """The poses along the path (points, 3), with every turn and slide in `samples` parts, for drawings."""
+def trace(start: Triple, moves: tuple[Move, ...]) -> Array:
+    """The poses along the path (points, 3), with every turn and slide in 16 parts, for drawings."""
     parts = [np.array([start], dtype=float)]
-    along = np.linspace(0.0, 1.0, samples + 1)[1:, None]
+    along = np.linspace(0.0, 1.0, 17)[1:, None]
     for pose, move in zip(stops(start, moves), moves, strict=False):
         turned = pose + np.array([0.0, 0.0, move.turn])
         ahead = np.array([math.cos(turned[2]), math.sin(turned[2]), 0.0])

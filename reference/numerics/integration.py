@@ -47,8 +47,6 @@ def hopeless(now: float, until: float, longest: float, taken: int, most: int) ->
 
 @dataclass(frozen=True)
 class Integrated:
-    """An integrated motion; a call with times (times,) [s] returns states (times, states)."""
-
     rates: Rates
     times: Array  # (knots,).
     states: Array  # (knots, states).

@@ -112,7 +112,6 @@ def first_below(function: Function, knots: Array) -> tuple[float, int] | None:
 
 
 def _pieces(function: Function, knots: Array) -> list[tuple[float, float, Array, Array, float]]:
-    """Begin and end of intervals, with values at the points, series (functions, SERIES_DEGREE + 1) and noise."""
     begin, end = knots[:-1], knots[1:]
     last_tail = np.full(len(begin), np.inf)
     pieces: list[tuple[float, float, Array, Array, float]] = []

@@ -91,7 +91,6 @@ class Ellipse(Curve):
         return u, self.arc_of(u), self.speed_of(u)
 
     def _guess(self, rest: Array) -> Array:
-        """Approximate parameters (...) of arcs [m] within half a turn, by cubic interpolation of a table."""
         u, arcs, speeds = self._half_turn
         index = np.clip(np.searchsorted(arcs, rest) - 1, 0, GUESSES - 2)
         width, part = arcs[index + 1] - arcs[index], rest - arcs[index]
@@ -118,7 +117,6 @@ class Ellipse(Curve):
 
 
 def _unwrapped(angle: Array, about: Array) -> Array:
-    """The angle (...) [rad], moved by whole turns to within half a turn of `about`."""
     return angle + 2 * math.pi * np.round((about - angle) / (2 * math.pi))
 
 
@@ -162,7 +160,6 @@ class Cam(Curve):
         return np.sum(k**order * (cosines * np.cos(phase) + sines * np.sin(phase)), axis=-1)
 
     def speed_of(self, p: ArrayLike) -> Array:
-        """The radius of curvature h + h'' [m]."""
         normal = along(p)
         return self.radius + self._series(normal, 0) + self._series(normal, 2)
 

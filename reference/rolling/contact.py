@@ -38,7 +38,6 @@ class Contact:
 
     @property
     def tangent(self) -> Array:
-        """e_t (..., 2)."""
         return np.stack([np.cos(self.tangent_angle), np.sin(self.tangent_angle)], axis=-1)
 
     @property
@@ -78,8 +77,7 @@ def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, en
     def free(arc: ArrayLike) -> Array:
         on_body = body.curvature_of(body.parameter(arc))
         on_ground = ground.curvature_of(ground.parameter(total - np.asarray(arc)))
-        with np.errstate(invalid="ignore"):  # a spiral's pole
-            return on_ground + on_body - NEAR_CONFORMAL * np.maximum(np.abs(on_ground), np.abs(on_body))
+        return on_ground + on_body - NEAR_CONFORMAL * np.maximum(np.abs(on_ground), np.abs(on_body))
 
     arcs = np.linspace(body_arc, last, SCAN)
     blocked = np.flatnonzero(free(arcs) <= 0)
@@ -93,7 +91,6 @@ def first_fit(body: Curve, ground: Curve, body_arc: float, ground_arc: float, en
 
 
 def refuse_conformal(contact: Contact) -> None:
-    """Raise InvalidMechanism if curvature_A + curvature_B is below NEAR_CONFORMAL of the larger curvature."""
     with np.errstate(divide="ignore", invalid="ignore"):
         near = ~(contact.conformality >= NEAR_CONFORMAL)
     if np.any(near):

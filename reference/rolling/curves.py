@@ -176,7 +176,6 @@ class Placed(Curve):
 
 
 def straight_has_no_inverse(owner: str) -> InvalidMechanism:
-    """The error for the search of a tangent angle on a straight boundary."""
     return InvalidMechanism(
         f"{owner}: it is straight, so its direction does not determine a point; use a curved boundary"
     )

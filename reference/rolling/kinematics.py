@@ -14,7 +14,7 @@ from reference.checks import InvalidMechanism, Valid, validated
 from reference.numerics.roots import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
 from reference.rolling.contact import Contact, first_fit, refuse_conformal, refuse_overlap, signed_circle
-from reference.rolling.curves import Array, Curve, Line, Side, Vector
+from reference.rolling.curves import Array, Curve, Line, Side
 from reference.validators import of_shape
 
 Place = Annotated[ArrayLike, of_shape("...", 2)]
@@ -103,7 +103,6 @@ class Rolling(Valid):
 
     @cached_property
     def _parameter_limits(self) -> tuple[float, float]:
-        """The range of the body's parameter in which rolling is possible."""
         low, high = self.body.limits
         ground_low, ground_high = self.ground.limits
         total = self.ground_arc + self.body_arc
@@ -192,27 +191,21 @@ class Rolling(Valid):
         contact = self.contact(theta)
         return np.concatenate([contact.point + contact.arm, contact.theta[..., None]], axis=-1)
 
-    def _arm(self, contact: Contact, point: Vector | ArrayLike) -> Array:
-        """r_{P/C} (..., 2) [m] for a point P of the body, given in the body's frame."""
-        return contact.arm + rotated(contact.theta, np.asarray(point, dtype=float))
-
     @validated
     def position(self, theta: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
         """The roulette: positions (..., 2) [m] of a point of the body; `point` [m] is in the body's frame."""
         contact = self.contact(theta)
-        return contact.point + self._arm(contact, point)
+        return contact.point + contact.arm + rotated(contact.theta, np.asarray(point, dtype=float))
 
     @validated
-    def velocity(self, theta: ArrayLike, rate: ArrayLike, point: Place = (0.0, 0.0)) -> Array:
-        """(18.66) v = omega x r_{P/C} (..., 2) [m/s] of a point of the body at the rate omega (...) [rad/s]."""
-        return rotation_velocity(rate, self._arm(self.contact(theta), point))
+    def velocity(self, theta: ArrayLike, rate: ArrayLike) -> Array:
+        """(18.66) v = omega x r_{O'/C} (..., 2) [m/s] of the body's origin at the rate omega (...) [rad/s]."""
+        return rotation_velocity(rate, self.contact(theta).arm)
 
     @validated
-    def pinned_acceleration(
-        self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
-    ) -> Array:
+    def pinned_acceleration(self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike) -> Array:
         """alpha x r - omega^2 r (..., 2) [m/s^2]: the acceleration of a body that is pinned at the contact."""
-        return rotation_acceleration(rate, angular_acceleration, self._arm(self.contact(theta), point))
+        return rotation_acceleration(rate, angular_acceleration, self.contact(theta).arm)
 
     @validated
     def rolling_acceleration(self, theta: ArrayLike, rate: ArrayLike) -> Array:
@@ -221,9 +214,6 @@ class Rolling(Valid):
         return (np.asarray(rate) ** 2 * contact.rate)[..., None] * contact.normal
 
     @validated
-    def acceleration(
-        self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike, point: Place = (0.0, 0.0)
-    ) -> Array:
-        """Accelerations (..., 2) [m/s^2] of a point at rates [rad/s] and angular accelerations [rad/s^2] (...)."""
-        pinned = self.pinned_acceleration(theta, rate, angular_acceleration, point)
-        return pinned + self.rolling_acceleration(theta, rate)
+    def acceleration(self, theta: ArrayLike, rate: ArrayLike, angular_acceleration: ArrayLike) -> Array:
+        """Accelerations (..., 2) [m/s^2] of the origin at rates [rad/s] and angular accelerations [rad/s^2] (...)."""
+        return self.pinned_acceleration(theta, rate, angular_acceleration) + self.rolling_acceleration(theta, rate)

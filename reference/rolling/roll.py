@@ -51,7 +51,6 @@ class Roll(BetweenTwo, JointElement):
 
     @cached_property
     def second_point(self) -> Vector:
-        """The contact at the start, in the second body's frame [m]."""
         x, y = self.rolling.body.point(self.rolling.body_arc)
         return (float(x), float(y))
 

@@ -83,7 +83,6 @@ class Andrews(PlacedScene):
 
     @property
     def pairs(self) -> tuple[Dyad, Dyad, Dyad]:
-        """Pairs of bars: bar and rod from B to the crank's end, and two pairs from A to P."""
         firsts, seconds = (
             (self.bar[0], self.upper[0], self.lower[0]),
             (self.rod[0], self.upper_end[0], self.lower_end[0]),
@@ -175,15 +174,12 @@ class Andrews(PlacedScene):
         return np.stack([rate, -(change * rate**2 / 2 + slope / self.rate_unit**2) / inertia], axis=-1)
 
     def _states(self, times: Array) -> Array:
-        """phi and phi' (times, 2) [rad, rad/s]."""
         if not times.any():  # a mechanism needs only the start
             return np.full((len(times), 2), (self.angle, 0.0), dtype=float)
         until = max(self.duration, float(times.max()))
         return shared(Andrews._solved, self, until)(times * self.rate_unit) * [1.0, self.rate_unit]
 
     def _solved(self, until: float) -> gauss.CollocationMotion:
-        """The motion, with time in units of 1 / `rate_unit`."""
-
         def accelerations(phi: Array, rate: Array) -> Array:
             return self._rates(np.concatenate([phi, rate], axis=-1))[..., 1:]
 
@@ -259,7 +255,6 @@ class Moving(NamedTuple):
 
 
 def direction(angle: Moving) -> Moving:
-    """exp(i angle) for an angle [rad]."""
     unit = np.exp(1j * angle.value)
     return Moving(unit, 1j * angle.first * unit, (1j * angle.second - angle.first**2) * unit)
 

@@ -67,7 +67,6 @@ class NFourBar(Scene):
         return np.sort(np.concatenate(sides))
 
     def _placement(self, angle: Array, rate: Array, acceleration: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 2N + 1, 3)."""
         down = direction_of(angle)
         velocity, linear = rotation_velocity(rate, down), rotation_acceleration(rate, acceleration, down)
         cranks, couplers = self.loops + 1, self.loops

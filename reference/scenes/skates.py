@@ -67,7 +67,6 @@ class PinnedBody(Scene):
         return math.sqrt(self.mass * pull * arm / (self.inertia + self.mass * arm**2))
 
     def _turning(self, t: Array) -> tuple[Array, Array, Array]:
-        """Angle [rad], rate [rad/s] and acceleration [rad/s^2] of the body."""
         if self.frequency == 0:
             return self.angle + self.turning_rate * t, np.full(t.shape, self.turning_rate), np.zeros(t.shape)
         pendulum = Pendulum(self.frequency, self.angle + self._lag, self.turning_rate)
@@ -137,7 +136,6 @@ class ChaplyginSleigh(Scene):
 
     @cached_property
     def _phase(self) -> float:
-        """The constant c of the motion of a sleigh with a turning rate."""
         return math.asinh(self.speed / (self._arm * abs(self.turning_rate)))
 
     def growth_rate(self) -> float:
@@ -279,7 +277,6 @@ class SkateOnSlope(Scene):
         return Trajectory(t, pose[:, None, :], twist[:, None, :], force[:, None])
 
     def _path(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """x and y of the blade [m], the integrals of u cos theta and u sin theta."""
         first, rate, pull = self.heading, self.turning_rate, self.gravity
         if abs(rate) * float(t.max(initial=0.0)) < 1:
             # The closed form divides by the rate's square. Within a radian, Gauss quadrature is exact.

@@ -19,9 +19,8 @@ from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.contact import NEAR_CONFORMAL
 from reference.rolling.curves import Circle, Line, Placed, Ring, Side
 from reference.rolling.kinematics import Rolling
-from reference.rolling.open_curves import LogSpiral, Parabola
+from reference.rolling.open_curves import Parabola, Traced
 from reference.rolling.roll import Roll
-from reference.rolling.traced import Traced
 from reference.scenes.andrews import Andrews
 from reference.scenes.catalogue import scene
 from reference.scenes.four_bar.linkage import FourBar
@@ -126,7 +125,6 @@ REFUSED: dict[str, tuple[Any, str]] = {
     "an unknown scene": (lambda: scene("fre_fourbar"), "did you mean 'free_four_bar'"),
     "a cam that isn't convex": (lambda: Cam(0.4, (0.0, 0.0, 0.06)), "not convex"),
     "a corner of a square": (lambda: Side(1.0).point(0.6), "corners of infinite curvature"),
-    "the pole of a spiral": (lambda: LogSpiral(0.5, 0.3).curvature(0.0), "infinite curvature"),
     "a needle of an ellipse": (lambda: Ellipse(1.0, 1e-4), "infinite curvature"),
     "the place of a straight line's direction": (lambda: Line().arc(1.0), "straight"),
     "a parabola standing upright": (lambda: Parabola(0.3).arc(1.6), "within"),

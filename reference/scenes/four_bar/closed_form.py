@@ -97,8 +97,6 @@ class Constants:
 
 
 class Triangles(NamedTuple):
-    """The triangles A B D and B C D at crank angles (n,), in the letters of the derivation [m^2]."""
-
     square: Array  # s^2
     m: Array
     n: Array

@@ -99,7 +99,6 @@ class CurveMotion(Valid):
         return states
 
     def bar_angles(self, states: Any) -> BarAngles:
-        """Angles, rates and accelerations of the bars in states (times, 4)."""
         angle, u = states[:, :3], states[:, 3:]
         direction, bend = self._direction_and_bend(angle)
         change = self._change(angle, states[:, 3], direction, bend)[:, None]
@@ -147,19 +146,16 @@ class CurveMotion(Valid):
         return np.longdouble(self.masses[1]) * np.longdouble(self.four_bar.crank) * np.longdouble(self.four_bar.coupler)
 
     def _inertia(self, angle: Any, t: Any) -> Any:
-        """The inertia I (...,) at angles (..., 3)."""
         coupling = self._cross * np.cos(angle[..., 1] - angle[..., 0])
         return np.sum(self._bar_inertias * t * t, axis=-1) + coupling * t[..., 0] * t[..., 1]
 
     def _pull(self, angle: Any, t: Any) -> Any:
-        """-grad V . t (...,)."""
         m1, m2, m3 = (np.longdouble(mass) for mass in self.masses)
         carried = np.array(self.four_bar.lengths, dtype=np.longdouble) * np.array([m1 / 2 + m2, m2 / 2, m3 / 2])
         force = np.longdouble(self.gravity[1]) * np.cos(angle) - np.longdouble(self.gravity[0]) * np.sin(angle)
         return np.sum(carried * force * t, axis=-1)
 
     def _change(self, angle: Any, u: Any, t: Any, bend: Any) -> Any:
-        """The acceleration u' (...,) at angles (..., 3) and u (...,)."""
         between = angle[..., 1] - angle[..., 0]
         coupling, fading = self._cross * np.cos(between), -self._cross * np.sin(between)
         inertia_slope = (

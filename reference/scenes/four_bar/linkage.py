@@ -43,7 +43,6 @@ class Forces(NamedTuple):
 
 @validated
 def three_densities(density: Densities) -> tuple[float, float, float]:
-    """Densities of crank, coupler and rocker [kg/m] from one or three numbers. Raises InvalidMechanism."""
     return density if isinstance(density, tuple) else (density, density, density)
 
 
@@ -246,7 +245,6 @@ class FourBar(Valid):
 
     @property
     def ground_length(self) -> float:
-        """The distance from A to D [m]."""
         return math.hypot(*self.ground)
 
     @cached_property
@@ -274,7 +272,6 @@ class FourBar(Valid):
     def kinematics(
         self, theta: ArrayLike, theta_dot: ArrayLike, theta_ddot: ArrayLike = 0.0, branch: Signs = 1
     ) -> Kinematics:
-        """Angles, rates and accelerations of coupler and rocker, computed together."""
         return Kinematics(*self._evaluated(theta, theta_dot, theta_ddot, branch, order=2))
 
     def _evaluated(

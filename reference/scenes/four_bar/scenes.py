@@ -50,12 +50,10 @@ class FourBarScene(Scene):
 
     @property
     def four_bar(self) -> FourBar:
-        """The linkage's equations."""
         return FourBar(self.crank, self.coupler, self.rocker, self.ground)
 
     @property
     def masses(self) -> tuple[float, float, float]:
-        """The masses of crank, coupler and rocker [kg]."""
         densities = three_densities(self.density)
         return densities[0] * self.crank, densities[1] * self.coupler, densities[2] * self.rocker
 
@@ -79,7 +77,6 @@ class FourBarScene(Scene):
         return Mechanism(bodies, pins + drives, self.gravity)
 
     def _bodies(self, motion: BarAngles) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 3 bodies, 3) of the bars in a motion of their angles."""
         bars = np.array(self.four_bar.lengths) * np.exp(1j * motion.angle)
         velocities = 1j * motion.rate * bars
         accelerations = (1j * motion.acceleration - motion.rate**2) * bars

@@ -182,14 +182,12 @@ class Chain(Valid):
         return self._accelerations(angle, rate).astype(float)
 
     def _accelerations(self, angle: Any, rate: Any) -> Any:
-        """`accelerations` without checks of arguments, in the precision of the forces."""
         forces = self._forces(angle, rate)
         forces[..., :-1, :] += forces[..., 1:, :]
         normal = perpendicular(0.5 * self._length[:, None] * direction_of(np.asarray(angle, dtype=forces.dtype)))
         return -np.sum(normal * forces, axis=-1) / self.inertia
 
     def rates(self, state: Array) -> Array:
-        """d/dt of (angles, rates) (..., 2 links), without checks."""
         angle, rate = state[..., : self.links], state[..., self.links :]
         return np.concatenate([rate, self._accelerations(angle, rate).astype(float)], axis=-1)
 
@@ -282,7 +280,6 @@ class Chain(Valid):
             neighbour[: self.links] += move * (PERTURBATION / np.abs(move).max())
 
         def rates(state: Array) -> Array:
-            """The rates of all motions; one call costs little more than for one motion."""
             return self.rates(state.reshape(*state.shape[:-1], *together.shape)).reshape(state.shape)
 
         unit = np.tile(units_of_motion(self.rates, start), starts + 1)

@@ -84,7 +84,6 @@ def jacobi(argument: ArrayLike, complement: float) -> tuple[Array, Array, Array,
 
 
 def _first_quarter(argument: Array, complement: float) -> tuple[Array, Array, Array]:
-    """(sn, cn, dn) for 0 <= argument <= K/2, by the descending mean."""
     means, roots = [], []
     mean, root = 1.0, math.sqrt(complement)
     while True:
@@ -241,7 +240,6 @@ class BarPendulum(Scene):
         return Mechanism((bar,), (joint,), (0.0, -self.gravity))
 
     def _bar(self, t: Array) -> tuple[Array, Array, Array]:
-        """Pose, twist and acceleration of the centre of mass (times, 3)."""
         angle, rate, acceleration = self.pendulum.motion(t)
         arm = self.length / 2 * direction_of(angle)
         return (

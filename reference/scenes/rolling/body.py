@@ -79,7 +79,6 @@ class RollingBody(Valid):
 
     @contextmanager
     def _rolling_on(self) -> Iterator[None]:
-        """If an integration fails at a limit of the rolling, raise the error that names the limit."""
         try:
             yield
         except IntegrationFailed:
@@ -120,7 +119,6 @@ class RollingBody(Valid):
         return tangent, normal
 
     def _forces(self, t: ArrayLike) -> tuple[Array, Array, Array]:
-        """The `forces`, and the sum (times,) of the absolute values of the terms in the forces [N]."""
         theta, rate = self.states(t)
         contact = self.rolling.contact(theta)
         turning = self._angular_acceleration(contact, rate)
@@ -180,7 +178,6 @@ class RollingBody(Valid):
 
     @property
     def _short(self) -> float:
-        """A time [s] in which the state changes little, from the rate, acceleration and stiffness at the start."""
         theta, rate = self.start
         pull = math.sqrt(abs(float(self.angular_acceleration(theta, rate))))
         return 1 / (max(abs(rate), pull, self._pace_of_rest) or 1.0)

@@ -76,7 +76,6 @@ class Tow(Valid):
         return math.sqrt(-self._discriminant) / (2 * self.length)
 
     def _remainder(self, distance: Array) -> Array:
-        """The mean angle of (q, p) [rad] at a distance, without half turns."""
         return self._rate * distance - np.round(self._rate * distance / math.pi) * math.pi
 
     def _half_angle_vector(self, distance: Array) -> tuple[Array, Array]:

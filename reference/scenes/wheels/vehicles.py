@@ -88,7 +88,6 @@ class CarAndTrailer(Scene):
         return Tow(self.length, angle, radius, (0.0, 0.0, direction)), pace, heading - direction - angle
 
     def _headings(self, way: Array) -> Array:
-        """Headings of car and trailer (..., 2) [rad] after the rear axle has moved by s [m]."""
         tow, pace, turns = self._tow
         return np.stack([self.pose[2] + self.curvature * way, tow.heading(pace * way) + turns], axis=-1)
 
@@ -117,7 +116,6 @@ class CarAndTrailer(Scene):
 
     @cached_property
     def _stretch(self) -> Antiderivative:
-        """The integral of sqrt(M/M(0)) over the rear axle's distance s [m]."""
         sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         shortest = min(self.length, 1 / (abs(self.curvature) + 1e-9))
         return Antiderivative(lambda r: np.sqrt(self.apparent_mass(sign * r) / first), shortest)
@@ -150,7 +148,6 @@ class CarAndTrailer(Scene):
         return Mechanism(bodies, tuple(joints))
 
     def _moving(self, way: Array, speed: Array) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 2, 3)."""
         headings = self._headings(way)
         per_way = self._per_way(headings)
         turning = headings + 1j * COMPLEX_STEP * per_way[..., 2]  # per metre
