@@ -6,6 +6,7 @@ from engines.contract import (
     ConvergenceOrder,
     Enforcement,
     Engine,
+    EngineWrapper,
     Instant,
     NotDeclared,
     OneShot,
@@ -16,22 +17,6 @@ from engines.contract import (
     method_name,
     refuse_forces,
 )
-from engines.wrapper import EngineWrapper
 
-__all__ = [
-    "CLAIM",
-    "EXACT",
-    "ConvergenceOrder",
-    "Enforcement",
-    "Engine",
-    "EngineWrapper",
-    "Instant",
-    "NotDeclared",
-    "OneShot",
-    "Regularisation",
-    "Run",
-    "Size",
-    "Unsupported",
-    "method_name",
-    "refuse_forces",
-]
+__all__ = ["CLAIM", "EXACT", "ConvergenceOrder", "Enforcement", "Engine", "EngineWrapper", "Instant", "NotDeclared"]
+__all__ += ["OneShot", "Regularisation", "Run", "Size", "Unsupported", "method_name", "refuse_forces"]

@@ -21,14 +21,13 @@ pyb2d3 0.11.1 has no function for the frequency of joints (`b2World_SetJointTuni
 of a weld joint. With `closing`, a Pin without a drive is a weld joint with almost no angular stiffness (SLACK), and the
 points of Pins, Rods and Welds have the frequency closing / h. For contacts the engine permits at most closing = 1/4.
 With closing = 1/2 a chain of ten pins diverges. A stiff pin turns the rounding of positions into forces, so shorter
-steps have noisier reactions. The page `engines` shows the effect of the frequency and of sub-steps.
+steps have noisier reactions.
 
 The engine reduces a rate above an eighth of a turn per step, and the run then has a warning.
 
-The engine uses single precision. Errors of positions below about 1e-6 of the motion are rounding. Errors of
-accelerations below 1e-7 of the speed divided by the step are rounding too. The adapter computes angles and rotations
-itself, since the engine's functions have errors of 1.6e-3 and 3e-5 rad. The adapter also counts whole turns, which a
-rotation does not contain.
+The engine uses single precision. Errors of positions below about 1e-6 of the motion are rounding. The adapter computes
+angles and rotations itself, since the engine's functions have errors of 1.6e-3 and 3e-5 rad. The adapter also counts
+whole turns, which a rotation does not contain.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ import numpy as np
 
 from engines.capability import Capability, Lack
 from engines.contract import SINGLE_PRECISION, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
-from engines.motions import FORCES_COST, over_three
+from engines.motions import FORCES_COST, motors_of, over_three
 from engines.sampling import sampled_with_differences, unwrapped
 from engines.single_run import ExtraEngine, Recorded
 from reference.checks import Count, Name, NonNegative, validated
@@ -77,7 +76,7 @@ class Box2DWorld:
         import pyb2d3
 
         self.mechanism, self.box2d, self.dt, self.substeps, self.hertz = mechanism, pyb2d3, dt, substeps, hertz
-        self.motors = self._motors()
+        self.motors = motors_of(mechanism, "box2d")
         self.world = pyb2d3.World(gravity=mechanism.gravity, maximum_linear_speed=SPEED_LIMIT)
         self.world.continuous_enabled = False
         self.ground = self.world.create_static_body(position=(0.0, 0.0))
@@ -87,21 +86,6 @@ class Box2DWorld:
         self.angles = mechanism.pose[:, 2].copy()  # unwrapped angles of the last step [rad]
         count, rows = len(self.bodies), mechanism.row_count
         self.size = Size(count, 3 * count, rows, rows)
-
-    def _motors(self) -> dict[frozenset[str | None], Drive]:
-        """The drives by pair of bodies; raises Unsupported for a drive between bodies without a pin or slot."""
-        joints = self.mechanism.joints
-        held = {frozenset((joint.first, joint.second)) for joint in joints if isinstance(joint, Pin | Slot)}
-        drives = [joint for joint in joints if isinstance(joint, Drive)]
-        for drive in drives:
-            if frozenset((drive.first, drive.second)) not in held:
-                raise Unsupported(
-                    f"drive {drive.name!r}: a motor of box2d belongs to a joint between the same two bodies"
-                )
-        motors = {frozenset((drive.first, drive.second)): drive for drive in drives}
-        if len(motors) < len(drives):
-            raise Unsupported("two drives between the same two bodies: a joint of box2d has one motor")
-        return motors
 
     def _body(self, body: Any) -> Any:
         x, y, angle = body.pose
@@ -148,10 +132,9 @@ class Box2DWorld:
         return self.world.create_wheel_joint(**self._ends(joint), **motor, local_axis_a=line, enable_spring=False)
 
     def _take_motor(self, joint: Pin | Slot) -> tuple[Drive | None, float, dict[str, Any]]:
-        drive = self.motors.pop(frozenset((joint.first, joint.second)), None)
+        drive, sign = self.motors.get(joint.name, (None, 1.0))
         if drive is None:
-            return None, 1.0, {}
-        sign = 1.0 if drive.second == joint.second else -1.0
+            return None, sign, {}
         speed = sign * drive.turning_rate
         return drive, sign, {"enable_motor": True, "motor_speed": speed, "max_motor_torque": MOTOR_TORQUE}
 
@@ -160,7 +143,6 @@ class Box2DWorld:
         return self.world.create_weld_joint(**ends, **{**frequencies, "angular_damping_ratio": 1.0, **further})
 
     def _poses(self) -> list[tuple[float, float, float]]:
-        """x, y and the wrapped angle of each body [m, m, rad]."""
         states = ((body.position, body.rotation) for body in self.bodies)
         return [(at.x, at.y, math.atan2(turned.s, turned.c)) for at, turned in states]
 

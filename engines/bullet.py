@@ -43,9 +43,9 @@ from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import RunWarning
 
-# The force limit [N, N m] of loop-closing constraints and motors. No constraint reaches this limit.
+# The force limit [N, N m] of loop-closing constraints and motors.
 MAX_FORCE = 1e30
-# The engine's limit on the rate of a joint [rad/s]. No joint reaches this limit.
+# The engine's limit on the rate of a joint [rad/s].
 RATE_LIMIT = 1e9
 # CPU time [s] of a step of three bodies with the settings as shipped. ITERATION_COST is for one iteration over one row.
 BULLET_STEP_COST = 9e-6
@@ -175,7 +175,6 @@ def motor_rates(tree: Tree) -> dict[int, float]:
 
 
 def geared_columns(tree: Tree, gear: Gear) -> tuple[int, int]:
-    """The tree coordinates of the second and the first angle; raises Unsupported for a sum of coordinates."""
     coordinates = [tree.turning(None, name) for name in (gear.second, gear.first)]
     if any(len(columns) != 1 for columns in coordinates):
         raise Unsupported(
@@ -194,8 +193,6 @@ def package() -> Any:
 
 
 class BulletWorld:
-    """A mechanism in a physics server of its own in this process."""
-
     def __init__(self, tree: Tree, motors: dict[int, float], dt: float, parameters: dict[str, float]) -> None:
         """`motors`: rates [rad/s] by tree coordinate; `parameters`: parameters of the engine by name."""
         self.mechanism, self.tree, self.dt, self.motors, self.bullet = tree.mechanism, tree, dt, motors, package()
@@ -264,7 +261,6 @@ class BulletWorld:
         )
 
     def _close(self, loop: Any) -> None:
-        """Add the loop-closing constraint of a joint; points [m] are relative to the centres of mass."""
         numbers: dict[int | None, int] = {None: -1}
         numbers |= {link.body: index for link, index in zip(self.tree.links, self.links, strict=True)}
         ends = [(numbers[body], [*offset, 0.0]) for body, offset in world_ends(self.mechanism, loop)]

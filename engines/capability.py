@@ -62,11 +62,9 @@ class Capability:
 
     @property
     def absent(self) -> frozenset[type]:
-        """Classes of elements that the engine does not have by its documentation."""
         return frozenset(kind for kind, lack in self.lacks.items() if lack.documentation)
 
     def require(self, mechanism: Mechanism) -> None:
-        """Raise Unsupported for the first joint or force element that the engine does not build."""
         if refusal := self.refusal(mechanism):
             raise refusal
 

@@ -40,8 +40,6 @@ class OpenStart(InvalidMechanism):
 
 
 class _AnyStart(Mechanism):
-    """A mechanism whose start may violate its rows."""
-
     def _refuse_a_bad_start(self) -> None:
         pass
 
@@ -120,7 +118,6 @@ def with_consistent_start(
 
 
 def _refuse_without_digits(bodies: Sequence[Body]) -> None:
-    """Raise InvalidMechanism for an angle whose rounding exceeds DIGITS and for a velocity above FASTEST."""
     rounded = "floating point numbers of that size tell no angle to a millionth of a radian; give a smaller one"
     infinite = "its square, an energy, is no floating point number; give a smaller one"
     for body in bodies:
@@ -150,7 +147,6 @@ def _least_change(own: Mechanism, slip: Array, pose: Array) -> Array:
 
 
 def _per_length(own: Mechanism, slip: Array) -> Array:
-    """Slips (rows,) as rates [1/s]; a linear slip is divided by the mechanism's length."""
     return np.where(own.is_angular, slip, slip / own.length_scale)
 
 

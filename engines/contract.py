@@ -40,8 +40,8 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar, Literal, Protocol
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -141,8 +141,6 @@ class ConvergenceOrder:
 
 @dataclass(frozen=True)
 class NotDeclared:
-    """The engine declares no order or no law; `reason` is one sentence."""
-
     reason: str
 
 
@@ -164,8 +162,6 @@ class Instant:
 
 
 class Run(Protocol):
-    """A model at t = 0 that can be run once."""
-
     @property
     def size(self) -> Size: ...
     def __call__(self, samples: Count, every: Count) -> Trajectory: ...
@@ -177,7 +173,6 @@ class OneShot:
     _has_begun = False
 
     def begin(self) -> None:
-        """Mark the run as called. Raises RuntimeError if it was called before."""
         if self._has_begun:
             raise RuntimeError("this run is over: a run is one shot, build the engine again to repeat it")
         self._has_begun = True
@@ -268,6 +263,58 @@ class Engine(ABC):
     def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
         """The steps of the inner runs as fractions of dt; (1.0,) for an engine without inner runs."""
         return (1.0,)
+
+
+def _forwarded(member: str) -> Any:
+    return property(lambda wrapper: getattr(wrapper.engine, member))
+
+
+class EngineWrapper(Engine):
+    """The base class of an engine that runs another engine, `engine`, and forwards its declarations.
+
+    A subclass defines `variant` and `build`, and overrides members that differ from those of `engine`.
+    """
+
+    engine: Engine
+
+    def chosen(self, mechanism: Mechanism) -> Engine:
+        """The engine that runs this mechanism; a subclass may choose another one than `engine`."""
+        return self.engine
+
+    def prepare(self) -> None:
+        self.engine.prepare()
+
+    def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
+        return self.chosen(mechanism).order(mechanism)
+
+    def step_cost(self, mechanism: Mechanism) -> float:
+        return self.chosen(mechanism).step_cost(mechanism)
+
+    def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
+        return self.chosen(mechanism).enforcement(joint, mechanism)
+
+    def regularisation(self, mechanism: Mechanism, dt: float) -> Regularisation | None:
+        return self.chosen(mechanism).regularisation(mechanism, dt)
+
+    def iterations_of(self, mechanism: Mechanism) -> int | None:
+        return self.chosen(mechanism).iterations_of(mechanism)
+
+    def stricter(self, mechanism: Mechanism) -> Engine | None:
+        stricter = self.engine.stricter(mechanism)
+        return None if stricter is None else replace(self, engine=stricter)  # type: ignore[type-var]
+
+    def stepped(self, mechanism: Mechanism) -> Engine:
+        return self.chosen(mechanism).stepped(mechanism)
+
+    def inner_steps(self, mechanism: Mechanism) -> tuple[float, ...]:
+        return self.chosen(mechanism).inner_steps(mechanism)
+
+
+for _member in (
+    *("name", "packages", "modules", "family", "missing", "uses_contacts", "build_time", "precision", "angle_error"),
+    *("steps_in_child", "capability", "forces_by"),
+):
+    setattr(EngineWrapper, _member, _forwarded(_member))
 
 
 def method_name(engine: Engine) -> str:

@@ -134,8 +134,6 @@ def refuse_in_continuous_time(tree: Tree, scheme: Scheme) -> None:
 
 
 class DrakePlant:
-    """A plant in a diagram with a system that computes the force elements."""
-
     def __init__(self, tree: Tree, dt: float, scheme: Scheme) -> None:
         import pydrake.all
 
@@ -270,7 +268,6 @@ class DrakePlant:
         return self.plant.GetVelocities(self.context)[self.address]
 
     def forces(self, position: Array, velocity: Array) -> list[Any]:
-        """The force elements as external forces of Drake, at Drake's positions and velocities."""
         _, pushed = pushes(self.tree, position[self.address], velocity[self.address])
         applied = []
         for index, (x, y, torque) in enumerate(pushed.tolist()):

@@ -28,7 +28,6 @@ from reference.trajectory import Trajectory
 Array = NDArray[np.float64]
 
 # If the estimate exceeds the claim, `unresolved_at` is the time at which the estimate exceeds this share of the claim.
-# The value was fitted together with richardson.LEAST.
 EARLY = 1 / 30
 # If the estimate is between these multiples of the claim, a further run decides it (`further_level`).
 OPEN = (0.1, 30.0)
@@ -141,8 +140,6 @@ class Extrapolated(EngineWrapper, Valid):
 
 
 class ExtrapolatedRun(OneShot):
-    """A run that combines the runs of all levels; see `engines.Run`."""
-
     def __init__(self, method: Extrapolated, mechanism: Mechanism, dt: float) -> None:
         self._method, self._mechanism, self._dt = method, mechanism, dt
         self._levels, self._powers, self._unit = method.levels, method.powers, mechanism.pose_unit
@@ -273,7 +270,6 @@ class ExtrapolatedRun(OneShot):
             return np.fmax.accumulate((estimate / self._unit).max(axis=(1, 2)))
 
     def _has_no_expansion(self, poses: Array, largest: Array) -> NDArray[np.bool_]:
-        """Whether the estimate exceeds the finest run's apparent error up to each time (times,)."""
         if len(self._levels) < 3:
             return np.zeros(len(largest), dtype=bool)
         finer = combine(poses[-2:], extrapolation_weights(self._levels[-2:], self._powers[:1]))
@@ -293,11 +289,9 @@ class ExtrapolatedRun(OneShot):
 
 
 def _steps_between_compared(samples: int, every: int, bodies: int) -> int:
-    """The number of steps of dt between two compared instants, so that at most WATCHED poses are stored."""
     least = max(1, -(-samples * every * bodies // WATCHED))
     return next((count for count in range(least, every) if every % count == 0), every)
 
 
 def _run(run: Run, samples: int, every: int, stride: int) -> Trajectory:
-    """A run with reactions at every `stride`-th sample alone, since reactions are slow to compute."""
     return run.watched(samples, every, stride) if isinstance(run, Watched) else run(samples, every)

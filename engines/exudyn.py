@@ -82,7 +82,6 @@ class Exudyn(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """Order 2; reactions are unknown if velocities are constrained and initial accelerations are inconsistent."""
         velocities = holds_velocities(mechanism)
         reaction = math.nan if velocities and not self.consistent else None
         if self.integrator == "TrapezoidalIndex2":
@@ -93,7 +92,6 @@ class Exudyn(ExtraEngine):
 
     @validated
     def step_cost(self, mechanism: Mechanism) -> float:
-        """Approximate CPU time of a step [s], which a dense matrix makes cubic in the number of bodies."""
         size = over_three(mechanism)
         return EXUDYN_STEP_COST * size * (1.0 if self.sparse else max(1.0, size / 5) ** 2)
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from engines.exudyn import Exudyn
 
 PLANE_NORMAL = [0.0, 0.0, 1.0]
-# Radius [m] of a skate's disc. The disc is perpendicular to the plane, so its radius has no effect.
+# Radius [m] of a skate's disc.
 DISC_RADIUS = 0.1
 BELOW_TOLERANCE = unresolved(0.0, "a light body's forces are below what is resolved of the largest")
 GAVE_UP = RunWarning("exudyn: the solver gave up before the end, as Newton's method did not converge", "lost")
@@ -120,7 +120,6 @@ class ExudynSystem:
         return 0.0 if name is None else self.mechanism.bodies[self.mechanism.body_index(name)].pose[2]
 
     def _couple(self, *names: str | None, **law: Any) -> None:
-        """Add the equation factor1 * (second rotation) - (first rotation) = offset."""
         self._object("ObjectConnectorCoordinate", markerNumbers=self._rotations(*names), **law)
 
     def add_pin(self, joint: Pin | Weld) -> int:

@@ -74,13 +74,11 @@ def _difference_of(package: str, module: str, elsewhere: bool) -> str:
 
 
 def _release(version: object) -> tuple[int, ...]:
-    """The numbers of a version, such as (4, 1) for '4.1.0'; empty if the string is no version."""
     match = RELEASE.match(version) if isinstance(version, str) else None
     return tuple(map(int, re.sub(r"(\.0+)+$", "", match[1]).split("."))) if match else ()
 
 
 def _is_changed(file: metadata.PackagePath) -> bool:
-    """Whether a file was changed since its installation. False if no digest is recorded."""
     if file.hash is None or file.hash.mode != "sha256":
         return False
     try:

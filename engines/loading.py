@@ -73,7 +73,6 @@ def load(reference: str, kind: Kind, folder: Path | None = None) -> tuple[Any, .
 
 
 def _parts(reference: str) -> tuple[str, str]:
-    """The module or file, and the name, which may be empty. Raises ValueError."""
     if reference.endswith(".py"):
         return reference, ""
     source, _, name = reference.rpartition(":")
@@ -218,7 +217,6 @@ def registered_by_key(group: str, kind: Kind) -> dict[str, Any]:
 
 
 def _lacks_a_package(error: BaseException | None) -> bool:
-    """Whether an import failed because a package of another project is missing."""
     package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
     return package not in ("", "reference", "engines", "reports")
 
@@ -243,7 +241,6 @@ def _ours(group: str) -> list[tuple[str, str, str]]:
 
 
 def _theirs(group: str) -> list[tuple[str, str, str]]:
-    """(distribution, key, reference) of the entry points of other distributions."""
     return [point for point in _installed(group) if point[0] != OURS]
 
 

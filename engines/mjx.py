@@ -77,8 +77,6 @@ NO_VELOCITY_TERM = RunWarning(
 
 @dataclass(frozen=True)
 class Mjx(MuJoCoOnDevice):
-    """An engine in the sense of `engines.Engine`; `MuJoCoOnDevice` describes the fields."""
-
     name = "mjx"
     title: ClassVar[str] = "MJX"
     evaluation_cost: ClassVar[float] = 50e-6
@@ -89,7 +87,6 @@ class Mjx(MuJoCoOnDevice):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The order of the integrator; no order is declared for loops."""
         tree = spanning_tree(mechanism)
         if lacks_velocity_terms(tree):
             return NotDeclared("MJX leaves out the velocity term of loops, which no step makes smaller")
@@ -117,7 +114,6 @@ class Mjx(MuJoCoOnDevice):
         return None if settings is None else replace(self, settings=settings)
 
     def model(self, mechanism: Mechanism, dt: float) -> DeviceModel:
-        """The model on the device, not yet compiled by JAX; raises Unsupported."""
         model = self.compiled(mechanism, dt)
         if unit := _smallest_unit(model):
             model = self.compiled(mechanism, dt, unit)
@@ -149,7 +145,6 @@ def lacks_velocity_terms(tree: Tree) -> bool:
 
 @cache
 def _programs() -> tuple[Any, Any, Any]:
-    """Import JAX and return mjx and the functions steps(model, data, count) and forward(model, data)."""
     os.environ.setdefault("JAX_PLATFORMS", chosen_device())
     os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1")
     with quiet():  # JAX prints that another backend is missing

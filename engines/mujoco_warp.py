@@ -71,8 +71,6 @@ class StiffInSinglePrecision(TiedToStep):
 
 @dataclass(frozen=True)
 class MuJoCoWarp(MuJoCoOnDevice):
-    """An engine in the sense of `engines.Engine`; `MuJoCoOnDevice` describes the fields."""
-
     name = "mujoco-warp"
     title: ClassVar[str] = "MuJoCo Warp"
     evaluation_cost: ClassVar[float] = 17e-6
@@ -84,7 +82,6 @@ class MuJoCoWarp(MuJoCoOnDevice):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The order of the integrator; no order is declared for loops."""
         if spanning_tree(mechanism).closed:
             return NotDeclared("the stiffness of loops multiplies the rounding of single precision")
         return replace(self.order_without_loops(mechanism), amplified=self.precision / np.finfo(float).eps)
@@ -116,8 +113,6 @@ def load_warp(device: str) -> Any:
 
 
 class WarpModel:
-    """A model of MuJoCo and its copy on the device."""
-
     def __init__(self, model: MuJoCoModel, tolerance: float) -> None:
         """tolerance: tolerance in the settings; in `model` it is scaled by the inertia without drives."""
         self.model, self.device = model, chosen_device()

@@ -87,7 +87,6 @@ class Newton(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """No order is declared, since Newton documents no limit of the error for small steps."""
         return NotDeclared("newton closes gaps by fractions and residuals, in single precision")
 
     @validated

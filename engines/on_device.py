@@ -81,7 +81,6 @@ class MuJoCoOnDevice(ExtraEngine):
         return model
 
     def refusal(self, reason: Exception) -> Unsupported:
-        """The refusal of a model that the implementation does not accept."""
         return Unsupported(f"{self.title} does not run this model: {' '.join(str(reason).split())}")
 
 

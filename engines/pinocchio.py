@@ -22,7 +22,7 @@ step. At the origin the light body has an error of 4e-11 rad.
 
 As shipped the engine does not reduce the gap of a loop. With a `correction` c [1/s] the Baumgarte gains are c^2 and 2
 c. Depending on the motion and the step, the gains increase or reduce the errors of both integrators. Therefore no
-variant has a `correction`. The page `engines` shows their effect on the free four-bar.
+variant has a `correction`.
 """
 
 from __future__ import annotations
@@ -87,7 +87,6 @@ class Pinocchio(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """The order of the integrator; joints of the tree are exact."""
         tree = spanning_tree(mechanism)
         order = 4 if self.integrator == "rk4" else 1
         if tree.loops:
@@ -203,7 +202,6 @@ class PinocchioModel:
         return free + torques @ responses
 
     def _responses(self, position: Array) -> Array:
-        """Accelerations (drives, coordinates) due to a unit torque of each drive at rest without gravity."""
         rest, weight = np.zeros(self.tree.coordinates), self.model.gravity.linear.copy()
         self.model.gravity.linear = np.zeros(3)
         correction = self._constrained(position, rest, rest) if self.correction else 0.0

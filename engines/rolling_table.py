@@ -227,7 +227,6 @@ class Table:
 
     @property
     def width(self) -> float:
-        """Width of a cell [rad]; cell 0 begins at theta = 0."""
         return self._width
 
     def cells(self, first: int, count: int) -> NDArray[np.complex128]:
@@ -262,7 +261,6 @@ class Table:
         return self._through(index, _contacts(self._rolling, self._at(index, SAMPLED)))
 
     def _at(self, index: NDArray[np.int_], share: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Rotations (cells, shares) [rad] that differ from the middle by shares of the half width."""
         return np.asarray((index[:, None] + 0.5) * self._width + 0.5 * self._width * share, dtype=float)
 
     def _through(self, index: NDArray[np.int_], contacts: tuple[NDArray[np.complex128], ...]) -> NDArray[np.complex128]:

@@ -143,7 +143,6 @@ class Tree:
 
     @cached_property
     def geared(self) -> tuple[Drive, ...]:
-        """The drives whose rotation is no single tree coordinate."""
         return tuple(drive for drive in self.drives if len(self.turning(drive.first, drive.second)) != 1)
 
     @cached_property
@@ -328,7 +327,6 @@ def world_ends(mechanism: Mechanism, joint: Joint) -> list[tuple[int | None, tup
 
 
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:
-    """The vector [m] from a body's centre of mass to a point of the body, in the world's axes at t = 0."""
     if name is None:
         return point
     x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)

@@ -1,8 +1,8 @@
 """Physics engines of the browser under test: planck and p2 in JavaScript, Rapier and Jolt as WebAssembly.
 
 A child process of Node runs `worlds.mjs`, which builds and steps the worlds. Node compiles code during a run. Therefore
-the child lives as long as this process. Before the first run of each kind of mechanism, the child steps a trial world,
-which is not timed. `python -m engines.browser` installs the packages of npm into the user's cache folder.
+the child lives as long as this process. `python -m engines.browser` installs the packages of npm into the user's cache
+folder.
 
 The adapter switches off damping, which removes 10 % (p2) or 5 % (Jolt) of the velocity per second as shipped. Bodies do
 not sleep or collide. A Pin is a revolute joint or a hinge, a Weld is a fixed joint, and a Rod is a distance joint. A
@@ -41,7 +41,7 @@ import numpy as np
 from engines.capability import Capability, Lack
 from engines.contract import SINGLE_PRECISION, ConvergenceOrder, Enforcement, NotDeclared, Size, Unsupported
 from engines.extrapolated import Extrapolated
-from engines.motions import over_three
+from engines.motions import motors_of, over_three
 from engines.package_versions import installed_version, npm_folder
 from engines.sampling import unwrapped
 from engines.single_run import ExtraEngine, Recorded
@@ -88,8 +88,6 @@ def install() -> None:
 
 
 class Child:
-    """A process of Node that runs the worlds of one engine."""
-
     def __init__(self, engine: str, settings: Settings) -> None:
         script = Path(__file__).with_name("worlds.mjs")
         command = [shutil.which("node") or "node", str(script), str(npm_folder()), engine, json.dumps(dict(settings))]
@@ -141,10 +139,7 @@ def joint_requests(mechanism: Mechanism, engine: str) -> list[dict[str, Any]]:
 
     Raises Unsupported for a drive without a pin or slot between the same bodies, and for a second drive.
     """
-    drives: dict[frozenset[str | None], Drive] = {}
-    for joint in mechanism.joints:
-        if isinstance(joint, Drive) and drives.setdefault(frozenset((joint.first, joint.second)), joint) is not joint:
-            raise Unsupported(f"drive {joint.name!r}: a joint of {engine} has one motor, and this is the second drive")
+    motors = motors_of(mechanism, engine)
     requests = []
     for joint in mechanism.joints:
         if not isinstance(joint, Pin | Weld | Rod | Slot):
@@ -158,16 +153,12 @@ def joint_requests(mechanism: Mechanism, engine: str) -> list[dict[str, Any]]:
             case Rod():
                 request["length"] = joint.length
             case Pin() | Slot():
-                drive = drives.pop(frozenset((joint.first, joint.second)), None)
-                sign = 1.0 if drive is None or drive.second == joint.second else -1.0
+                drive, sign = motors.get(joint.name, (None, 1.0))
                 if isinstance(joint, Slot):
                     request |= {"line": joint.line_angle, "angle": _fixed_angle(joint, drive, sign, engine)}
                 elif drive is not None:
                     request["motor"] = sign * drive.turning_rate
         requests.append(request)
-    if drives:
-        drive = next(iter(drives.values()))
-        raise Unsupported(f"drive {drive.name!r}: a motor of {engine} belongs to a pin between the same two bodies")
     return requests
 
 
@@ -235,7 +226,6 @@ class BrowserEngine(ExtraEngine):
 
     @property
     def missing(self) -> str:
-        """One sentence on how to install the engine; empty if it is installed."""
         (package,) = self.packages
         if shutil.which("node") is None:
             return f"{self.name} needs Node, which is not installed, and then: {INSTALL}"
@@ -246,7 +236,6 @@ class BrowserEngine(ExtraEngine):
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-        """No order is declared, since the engines correct gaps in different ways."""
         return NotDeclared(f"the residual of {self.name}'s iterations follows no rule in the step")
 
     @validated
@@ -279,8 +268,6 @@ class P2(BrowserEngine):
 
 
 class Rapier(BrowserEngine):
-    """Rapier in two dimensions, in WebAssembly."""
-
     name = "rapier"
     packages = ("@dimforge/rapier2d-compat",)
     release = "0.21.0"

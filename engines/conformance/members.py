@@ -279,7 +279,6 @@ def refuses_a_second_call(subject: CheckedEngine) -> None:
 
 
 def _odd() -> dict[str, Mechanism]:
-    """Valid mechanisms for which an adapter may have no code."""
     nowhere = (0.0, 0.0)
     left, right, still = (
         Body(name, 1.0, 0.1, (x, 0.0, 0.0), (0.0, 0.0, spin))
@@ -323,23 +322,15 @@ def _odd() -> dict[str, Mechanism]:
 
 
 ODD = _odd()
-CHECKS = (
-    ConformanceCheck(builds_or_refuses, (*WORLDS, SPINNING)),
-    ConformanceCheck(builds_at_least_one),
-    ConformanceCheck(refuses_odd_mechanisms),
-    ConformanceCheck(refuses_bad_steps),
-    ConformanceCheck(refuses_bad_counts),
-    ConformanceCheck(refuses_a_second_call),
-    ConformanceCheck(has_a_name),
-    ConformanceCheck(is_a_frozen_dataclass),
-    ConformanceCheck(can_be_hashed),
-    ConformanceCheck(can_be_pickled),
-    ConformanceCheck(names_its_packages),
-    ConformanceCheck(has_the_right_shapes, WORLDS),
-    ConformanceCheck(tells_the_size_of_its_model, WORLDS),
-    ConformanceCheck(promises_an_order, WORLDS),
-    ConformanceCheck(tells_what_a_step_costs, WORLDS),
-    ConformanceCheck(tells_who_holds_a_joint, WORLDS),
-    ConformanceCheck(tells_how_joints_give_way, WORLDS),
-    ConformanceCheck(tells_the_steps_of_its_runs, WORLDS),
+CHECKS = tuple(
+    ConformanceCheck(function, worlds)
+    for worlds, functions in (
+        ((*WORLDS, SPINNING), (builds_or_refuses,)),
+        ((), (builds_at_least_one, refuses_odd_mechanisms, refuses_bad_steps, refuses_bad_counts)),
+        ((), (refuses_a_second_call, has_a_name, is_a_frozen_dataclass, can_be_hashed, can_be_pickled)),
+        ((), (names_its_packages,)),
+        (WORLDS, (has_the_right_shapes, tells_the_size_of_its_model, promises_an_order, tells_what_a_step_costs)),
+        (WORLDS, (tells_who_holds_a_joint, tells_how_joints_give_way, tells_the_steps_of_its_runs)),
+    )
+    for function in functions
 )

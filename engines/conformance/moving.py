@@ -205,7 +205,6 @@ def twists_have_their_order(subject: CheckedEngine, world: World) -> None:
 
 
 def _declared_order(subject: CheckedEngine, world: World) -> ConvergenceOrder:
-    """The declared order; raises NotApplicable if no order is declared."""
     subject.run(world.mechanism)  # an unsupported mechanism has no declared order
     if isinstance(order := subject.engine.order(world.mechanism), NotDeclared):
         raise NotApplicable(f"no order is declared: {order.reason}")
@@ -315,7 +314,6 @@ def feels_forces_or_refuses_them(subject: CheckedEngine) -> None:
 
 
 def _change_of_rate(mechanism: Mechanism, until: float) -> float:
-    """The change [rad/s] of the plate's angular velocity up to the time `until`, from the equation of motion."""
     pose, twist = np.zeros((1, 3)), np.zeros((1, 3))
 
     def derivative(_: float, state: Array) -> list[float]:

@@ -97,7 +97,6 @@ class Isometry:
         return changed, back
 
     def _joint(self, joint: Joint) -> Joint:
-        """The transformed joint. Points and lines of the ground are transformed too."""
         ground = joint.first is None
         sense = -1.0 if self.mirrored else 1.0
         own_angle = self._angle if ground else (lambda angle: sense * angle)

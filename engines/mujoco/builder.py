@@ -101,7 +101,6 @@ class ModelBuilder:
         return self.spec.body(self.spec_name(name))
 
     def add_site(self, name: str, body: str | None, point: tuple[float, float]) -> str:
-        """Add a site at a point [m] in the frame of a body, and return its name."""
         self.spec_body(body).add_site(name=name, pos=[*world_offset(self.mechanism, body, point), 0.0])
         return name
 
@@ -112,7 +111,6 @@ class ModelBuilder:
         return tendon
 
     def add_fixed_tendon(self, name: str, factors: Mapping[int, float]) -> Any:
-        """Add a tendon whose length is the sum of tree coordinates times `factors`."""
         tendon = self.spec.add_tendon(name=name)
         for column, factor in sorted(factors.items()):
             tendon.wrap_joint(f"coordinate {column}", factor)

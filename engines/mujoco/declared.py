@@ -122,7 +122,6 @@ class DeclaredState:
         return cls(mechanism, model, data, pose, twist, mechanism.unconstrained(pose, twist), *rows)
 
     def motion(self, accelerations: Array) -> Array:
-        """The accelerations of the bodies (bodies, 3) from accelerations of the coordinates (nv,)."""
         return _motion(self.model, self.data, accelerations)[2]
 
     def law(self, velocity_term: bool = True) -> Constrained:
@@ -219,7 +218,6 @@ class _JointRows:
 
     @property
     def beside(self) -> list[int]:
-        """The coordinates outside the tree, which are the clocks of drives."""
         return [column for column in range(self.model.compiled.nv) if column not in self.model.address]
 
     @property
@@ -265,7 +263,6 @@ def _rows_in_span(solver_rows: Array, candidates: list[int], rows: Array, column
 
 
 def _directions(model: MuJoCoModel, data: Any) -> Array:
-    """The twists (3 bodies, nv) due to unit velocities of the coordinates, at the pose of `data`."""
     count = model.tree.coordinates
     position = np.broadcast_to(data.qpos[model.address], (count, count))
     _, twists, _ = model.tree.motion(position, np.eye(count), np.zeros((count, count)))
@@ -275,7 +272,6 @@ def _directions(model: MuJoCoModel, data: Any) -> Array:
 
 
 def _motion(model: MuJoCoModel, data: Any, accelerations: Array) -> tuple[Array, Array, Array]:
-    """The poses, twists and accelerations (bodies, 3) in the state of `data` with `accelerations` (nv,)."""
     columns = (values[model.address][None] for values in (data.qpos, data.qvel, accelerations))
     (pose,), (twist,), (change,) = model.tree.motion(*columns)
     return pose, twist, change

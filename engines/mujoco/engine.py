@@ -23,10 +23,9 @@ from engines import (
 )
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco import declared
-from engines.mujoco.joints.links import DriveBy, RodBy
+from engines.mujoco.joints.links import DriveBy, RodBy, SlotBy, free_link_on_fixed_line
 from engines.mujoco.joints.roll import RollBy, RollContact
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
-from engines.mujoco.joints.slot import SlotBy, free_link_on_fixed_line
 from engines.mujoco.model import MUJOCO_CAPABILITY, Coordinates, MuJoCoModel, build_model
 from engines.mujoco.running import MuJoCoRun
 from engines.mujoco.solver_check import choose_solver, soften_until_solvable
@@ -238,7 +237,6 @@ def _has(mechanism: Mechanism, kind: type[Joint]) -> bool:
 
 
 def _refuse_huge_rates(data: Any) -> None:
-    """Raise Unsupported for rates or accelerations so large that MuJoCo would reset the state in the first step."""
     largest = max(float(np.abs(values).max(initial=0.0)) for values in (data.qvel, data.qacc))
     if largest > mujoco.mjMAXVAL:
         raise Unsupported(

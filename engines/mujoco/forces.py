@@ -43,7 +43,6 @@ def _add_damper(builder: ModelBuilder, force: Damper) -> None:
 def _add_angle_tendon(
     builder: ModelBuilder, force: TorsionSpring | TorsionDamper | Torque, sign: float = 1.0
 ) -> Any | None:
-    """Add a fixed tendon of the length `sign` times the relative angle; return None if the angle is constant."""
     factors = builder.tree.turning(force.first, force.second)
     scaled = {column: sign * factor for column, factor in factors.items()}
     return builder.add_fixed_tendon(_name(force), scaled) if factors else None
@@ -83,7 +82,6 @@ def _add_force(builder: ModelBuilder, force: Force) -> None:
 
 
 def _add_actuator(builder: ModelBuilder, force: ForceElement, kind: Any, gear: list[float], **fields: str) -> None:
-    """Add an actuator whose constant force is `gear`."""
     builder.spec.add_actuator(
         name=_name(force),
         trntype=kind,

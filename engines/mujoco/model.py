@@ -15,10 +15,9 @@ from engines import Unsupported
 from engines.capability import Capability
 from engines.mujoco.builder import DrivenCoordinate, Hooks, ModelBuilder, add_body, add_hinge, add_slide
 from engines.mujoco.forces import FORCE_CONSTRUCTIONS
-from engines.mujoco.joints.links import DriveBy, add_drives, add_gears, add_pins, add_rods, add_welds
+from engines.mujoco.joints.links import DriveBy, add_drives, add_gears, add_pins, add_rods, add_slots, add_welds
 from engines.mujoco.joints.roll import add_rolls
 from engines.mujoco.joints.skate import add_skates
-from engines.mujoco.joints.slot import add_slots
 from engines.mujoco.releases import NO_ISLANDS
 from engines.tree import Tree, spanning_tree
 from engines.units import counted_in, power_of_two

@@ -105,7 +105,6 @@ class MuJoCoRun(OneShot):
         return replace(run, **{name: getattr(run, name)[at] for name in ("t", "pose", "twist", "reaction", "estimate")})
 
     def _trajectory(self, counts: Counts, reaction_counts: Counts) -> Trajectory:
-        """The motion after `counts` (times,) steps, with reactions only after `reaction_counts` steps."""
         step, model = self._dt, self.model
         t = counts.astype(float) * step
         with logged_warnings(self.data) as log, model.callback_installed():

@@ -70,7 +70,6 @@ class TiedToStep(_Spring):
 
     @validated
     def reference(self, mechanism: Mechanism, dt: Positive) -> tuple[float, float]:
-        """solref before MuJoCo increases the time constant."""
         return self.steps * dt, 1.0
 
 

@@ -63,8 +63,6 @@ Factor = Annotated[float, Rule(lambda value: 0 <= value < 1, "from 0 to below 1"
 
 
 class _System(NamedTuple):
-    """The rows that impulses enforce, at one or more poses, without rows of prescribed motions."""
-
     matrix: Array  # A (..., rows, rows).
     starts: list[int]  # First row of the block of each pymunk constraint.
     jacobian: Array  # (..., rows, 3 bodies), zero in prescribed coordinates.
@@ -233,7 +231,6 @@ def _block_sizes(joint: Joint) -> tuple[int, ...]:
 
 
 def _smallest_eigenvalue(matrix: Array, lower: Array) -> float:
-    """The smallest eigenvalue of A x = mu L x by inverse iteration with sparse factors."""
     factors, right = splu(csc_matrix(matrix)), csc_matrix(lower)
     vector, value = np.ones(len(matrix)), 0.0
     for _ in range(200):

@@ -140,7 +140,6 @@ def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforceme
 
 
 def _is_off_centre(joint: Joint) -> bool:
-    """Whether a force at the blade of a skate turns the body by more than rounding."""
     return isinstance(joint, Skate) and abs(along_blade(joint)) > 1e-12 * math.hypot(*joint.second_point)
 
 
@@ -185,7 +184,6 @@ def first_law(engine: Pymunk, mechanism: Mechanism, dt: float) -> Array:
 def _converged(
     engine: Pymunk, mechanism: Mechanism, dt: float, steps: int, built: Mechanism
 ) -> tuple[Model, Recording] | NotDeclared:
-    """A recording of the first steps, with enough iterations to converge at all recorded poses."""
     rho = convergence_factor(mechanism)
     while True:
         iterations = math.ceil(math.log(CONVERGED_RESIDUAL) / math.log(rho)) + 5 if rho > 0 else 5

@@ -25,7 +25,6 @@ from reference.rolling.roll import Roll
 
 
 def _shipped() -> tuple[int, float]:
-    """pymunk's default iterations of a space and default error_bias of a joint."""
     space = pymunk.Space()  # local, since a space that exists when Python ends can crash the process
     return space.iterations, PivotJoint(space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0)).error_bias
 

@@ -181,7 +181,6 @@ class _Builder:
         return self.cranks[name].own_point if name in self.cranks else (0.0, 0.0)
 
     def from_origin(self, name: str | None, point: Vector) -> Vector:
-        """The vector [m] from the origin of a pymunk body to a point in the mechanism's body frame."""
         x, y = self.origin(name)
         return (point[0] - x, point[1] - y)
 
@@ -190,7 +189,6 @@ class _Builder:
         return self.from_origin(*first), self.from_origin(*second)
 
     def _constraints(self, joint: Joint) -> Constraints:
-        """The constraints of a joint; empty if prescribed motions of the bodies satisfy the joint."""
         if any(joint in (crank.pin, crank.drive) for crank in self.cranks.values()) or joint in self.turned.values():
             return []
         pair = self._pair(joint)

@@ -136,7 +136,6 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
 
 
 def _at_mass_centres(model: Model, states: Array, earlier: Array) -> tuple[Array, Array, Array]:
-    """Poses and velocities of the centres of mass, which differ from those of the engine's origins only for cranks."""
     pose, after, before = states[..., :3].copy(), states[..., 3:].copy(), earlier.copy()
     for index in _cranks(model):
         x, y = -model.origins[index]

@@ -109,15 +109,6 @@ def test_two_runs_of_one_process_do_not_change_each_other():
     assert np.array_equal(other.pose, alone.pose[:3])
 
 
-def test_a_world_that_is_no_longer_used_is_dropped_by_the_next_request():
-    world = engine_named("planck").model(scene("pendulum_1").mechanism(), 1e-3)
-    child, number = world.child, world.number
-    del world  # Python may do this between another request and its answer
-    assert number in child.unused
-    with pytest.raises(Unsupported, match="the engine refuses it"):
-        child.ask("run", id=number, samples=1, every=1)
-
-
 def test_without_npm_the_installation_ends_with_one_line(monkeypatch, tmp_path):
     monkeypatch.setenv("PLANAR_CROSSCHECK_CACHE", str(tmp_path))
     monkeypatch.setenv("PATH", "")

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from engines import CLAIM, Engine, NotDeclared, Unsupported, bullet, drake, exudyn, method_name, mujoco, pymunk
-from engines.constraint_error import FORCES, closing, displaced_reaction, reaction_doubts
+from engines.constraint_error import FORCES, closing, reaction_doubts
 from engines.lagrange import TRUTH
 from engines.mujoco.solver_check import _remaining_error
 from engines.mujoco.stiffness import Hardened
@@ -91,17 +91,6 @@ def test_the_displacement_closes_the_gaps_for_any_masses():
         assert not closing(described, t, np.full_like(pose, np.nan)).any()
 
 
-def test_reactions_at_a_displaced_pose_give_the_same_accelerations():
-    linkage = pendulum()
-    change = np.array([[[0.3, -2.0, 1.0]]])
-    pose, moved = linkage.pose[None], np.full((1, 1, 3), 1e-3)
-    force = linkage.reactions_of(pose, change, linkage.inertias)
-    pulled = np.einsum("tr,trc->tc", force, linkage.rows(pose)).reshape(pose.shape) / linkage.inertias
-    expected = linkage.reactions_of(pose + moved, pulled, linkage.inertias)
-    assert displaced_reaction(linkage, pose, force, moved) == pytest.approx(expected, rel=1e-12)
-    assert displaced_reaction(linkage, pose, force, 0 * moved) == pytest.approx(force, rel=1e-9)
-
-
 def test_the_search_counts_an_unreported_error_but_not_a_false_warning_as_a_fault():
     linkage = pendulum()
     truth = TRUTH.build(linkage, DT)(STEPS, 1)
@@ -150,28 +139,18 @@ def claims(engine: Engine, seed: int, kinds: tuple[str, ...], count: int) -> lis
 
 
 @CLAIMING
-def test_random_mechanisms_are_within_the_claim_or_unresolved(engine):
-    answers = claims(engine, 31, tuple(kind for kind in ALL_KINDS if kind != "roll"), 9)
-    assert len(answers) > 5
+@pytest.mark.parametrize(("seed", "count"), [(31, 9), pytest.param(601, 1000, marks=pytest.mark.slow)])
+def test_random_mechanisms_are_within_the_claim_or_unresolved(engine, seed, count):
+    answers = claims(engine, seed, tuple(kind for kind in ALL_KINDS if kind != "roll" or count > 9), count)
+    assert len(answers) > count / 2
     assert all(
         answer[name][0] <= answer[name][1]
         for answer in answers
         for name in (CLAIMED_POSES, CLAIMED_REACTIONS)
         if name in answer
     )
-
-
-@pytest.mark.slow
-@CLAIMING
-def test_a_thousand_mechanisms_are_within_the_claim_and_few_are_unresolved(engine):
-    answers = claims(engine, 601, ALL_KINDS, 1000)
-    assert all(
-        answer[name][0] <= answer[name][1]
-        for answer in answers
-        for name in (CLAIMED_POSES, CLAIMED_REACTIONS)
-        if name in answer
-    )
-    assert np.mean([answer.get(NEEDLESS_REPORT, (0.0, 1.0))[0] for answer in answers]) <= 0.02
+    if count > 9:
+        assert np.mean([answer.get(NEEDLESS_REPORT, (0.0, 1.0))[0] for answer in answers]) <= 0.02
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engines import CLAIM, Run, Size, Unsupported
-from engines.extrapolated import Extrapolated, _steps_between_compared
+from engines.extrapolated import Extrapolated
 from engines.richardson import combine, expected_error, extrapolation_weights
 from reference.forces import TorsionDamper
 from reference.joints import Skate
@@ -158,12 +158,6 @@ def test_the_sampling_changes_neither_motion_nor_estimate_nor_warnings(every):
     )
 
 
-@pytest.mark.parametrize(("most", "steps"), [(60, 1), (20, 3), (1, 6)])
-def test_long_runs_are_compared_at_fewer_instants(most, steps, monkeypatch):
-    monkeypatch.setattr("engines.extrapolated.WATCHED", most)
-    assert _steps_between_compared(samples=10, every=6, bodies=1) == steps
-
-
 @pytest.mark.parametrize("growth", [0.0, 0.3, 1.0])
 def test_the_estimate_is_near_the_error_of_a_power_series_in_the_step(growth):
     # The expansion of 1 / (1 - h / 3) contains all powers of the step h.
@@ -188,20 +182,6 @@ def test_runs_that_step_over_a_damper_are_unresolved_from_the_start():
     over = exact.build(linkage, 1.1 * linkage.time_scale)(10, 1)
     assert over.unresolved_at == 0
     assert any("unresolved from 0 s on" in warning for warning in over.warnings)
-
-
-def test_warnings_of_reactions_are_relative_to_the_acting_forces(monkeypatch):
-    linkage, plain = sledge(), SeriesRun.__call__
-    weight = linkage.bodies[0].mass * 9.81
-    for size, is_reported in ((weight, True), (1e-9 * weight, False)):
-
-        def noisy(self: SeriesRun, samples: int, every: int, size: float = size) -> Trajectory:
-            trajectory = plain(self, samples, every)
-            return replace(trajectory, reaction=np.full_like(trajectory.reaction, size * np.sin(1e4 * self.dt)))
-
-        monkeypatch.setattr(SeriesRun, "__call__", noisy)
-        trajectory = Extrapolated(SeriesToy({2: 0.0}), "extended", (1, 2, 3), (2, 3)).build(linkage, 0.01)(10, 3)
-        assert any("reactions are resolved" in warning for warning in trajectory.warnings) == is_reported
 
 
 def test_samples_are_nan_if_one_level_fails():

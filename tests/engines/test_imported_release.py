@@ -121,9 +121,3 @@ def test_no_notebook_or_test_runs_another_release_than_it_names():
     for function, argument in ((planar_crosscheck.check, model), (planar_crosscheck.conform, default)):
         with pytest.raises(ValueError, match=r"mujoco-core is .* by its metadata, and mujoco that is imported is 3.17"):
             function(argument)
-
-
-def test_every_engine_that_is_installed_is_of_the_release_in_its_metadata():
-    for module in ("mujoco", "pymunk", "exudyn", "pinocchio"):
-        pytest.importorskip(module)
-    assert registry.mislabelled() == ""

@@ -182,19 +182,6 @@ def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
         assert (max(first, 2 * dt), second) == pytest.approx((2 / damper, 1.0), rel=1e-14)
 
 
-@pytest.mark.parametrize(("steps", "dt"), [(2.0, 1e-2), (5.0, 1e-4), (20.0, 1e-2)])
-def test_the_first_acceleration_of_a_loop_with_the_integrator_discrete(steps, dt):
-    # The exact loop with a closed start satisfies J a = -bias. Backward Euler with the step h divides J a by
-    # 1 + h b + h^2 k, with the stiffness k and damping b of the spring. This divisor is (1 + 1 / steps)^2 for any step.
-    def first(integrator):
-        engine = MuJoCo("loop", integrator=integrator, stiffness=TiedToStep(steps))
-        run = engine.build(DrivenFourBar().mechanism(), dt)
-        mujoco.mj_forward(run.model.compiled, run.data)
-        return run.data.efc_J.reshape(run.data.nefc, -1)[:2] @ run.data.qacc
-
-    np.testing.assert_allclose(first("discrete") / first("implicitfast"), (1 + 1 / steps) ** -2, rtol=1e-4)
-
-
 # Failures and their warnings
 
 

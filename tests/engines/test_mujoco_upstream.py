@@ -1,16 +1,14 @@
-"""Tests of properties of MuJoCo that the adapter needs: time constants, impedance, friction, sparse factorisation."""
+"""Tests of properties of MuJoCo that the adapter needs: time constants, impedance, friction."""
 
 from __future__ import annotations
 
-import copy
 from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
 
-from engines.mujoco import TUNED, Shipped
-from reference.scenes.catalogue import scene
+from engines.mujoco import Shipped
 
 EQUALITY_AND_CONTACT = """
 <mujoco>
@@ -74,56 +72,3 @@ def test_upstream_friction_has_a_rate_of_its_own_in_the_elliptic_cone_only(cone:
     mujoco.mj_forward(model, data)
     # MuJoCo divides both damping constants by dmax. The default of dmax is 0.95.
     assert set(np.round(data.efc_KBIP[:, 1] * 0.95, 9)) == rates
-
-
-# For some trees with branches, the Newton solver of release 4.0.0 computed wrong accelerations without a warning. The
-# sparse Cholesky factor of the Hessian was wrong (changelog of 4.0.1, github.com/google-deepmind/mujoco/issues/3767).
-
-# Largest difference of dense and sparse accelerations due to rounding, relative to the largest acceleration.
-AGREEMENT = 1e-8
-STATE_SPREAD = (
-    0.3  # Distance of the random states from the initial state [rad or m], so that no symmetry hides an error.
-)
-# The smallest tree with the error in 4.0.0 has five links and two loops. Three links are at the tip of the first link.
-PARENTS = (-1, 0, 0, 0, 2)
-CROSSING = ((2, 1), (3, 1))
-
-
-def branching_tree() -> Any:
-    def link(index: int) -> str:
-        carried = "".join(link(child) for child, parent in enumerate(PARENTS) if parent == index)
-        position = "0 0 0" if index == 0 else "1 0 0"
-        return (
-            f'<body name="link {index}" pos="{position}"><joint axis="0 0 1"/>'
-            f'<inertial pos="0.5 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>{carried}</body>'
-        )
-
-    loops = "".join(f'<connect body1="link {a}" body2="link {b}" anchor="1 0 0"/>' for a, b in CROSSING)
-    return mujoco.MjModel.from_xml_string(
-        '<mujoco><option gravity="0 -9.81 0"><flag contact="disable"/></option>'
-        f"<worldbody>{link(0)}</worldbody><equality>{loops}</equality></mujoco>"
-    )
-
-
-def disagreement(model: Any, states: int = 5) -> float:
-    """The largest relative difference of dense and sparse accelerations in the initial state and in random states."""
-    random, worst, pairs = np.random.default_rng(0), 0.0, []
-    for kind in (mujoco.mjtJacobian.mjJAC_DENSE, mujoco.mjtJacobian.mjJAC_SPARSE):
-        changed = copy.copy(model)
-        changed.opt.jacobian, changed.opt.tolerance = kind, min(model.opt.tolerance, 1e-20)
-        pairs.append((changed, mujoco.MjData(changed)))
-    for state in range(states):
-        step, rates = random.normal(size=(2, model.nv)) * [[STATE_SPREAD * (state > 0)], [1.0]]
-        for changed, data in pairs:
-            mujoco.mj_resetData(changed, data)
-            mujoco.mj_integratePos(changed, data.qpos, step, 1.0)
-            data.qvel[:] = rates
-            mujoco.mj_forward(changed, data)
-        dense, sparse = (data.qacc for _, data in pairs)
-        worst = max(worst, float(np.abs(dense - sparse).max() / np.abs(dense).max()))
-    return worst
-
-
-def test_this_release_has_the_same_accelerations_dense_and_sparse() -> None:
-    person = TUNED.model(scene("person_two_feet").mechanism(), 1e-3).compiled
-    assert max(map(disagreement, (branching_tree(), person))) < AGREEMENT

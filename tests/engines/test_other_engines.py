@@ -19,10 +19,8 @@ from engines import Size, Unsupported, registry, single_run
 from engines.lagrange import TRUTH
 from engines.mjx import DEFAULT as MJX
 from engines.mjx import NO_VELOCITY_TERM
-from engines.mjx import TUNED as MJX_TUNED
 from engines.mjx import VARIANTS as MJX_VARIANTS
 from engines.pinocchio import PinocchioModel
-from engines.sampling import sampled_with_differences
 from engines.units import counted_in
 from reference.forces import Torque
 from reference.joints import Drive, Gear, Pin, Rod
@@ -33,7 +31,6 @@ from reference.scenes.four_bar.scenes import OverdrivenFourBar
 from reports.cli.selection import choose_engines
 from reports.model.catalogue import SCENES
 from reports.model.ending import BadInput
-from reports.pages.engines.page import reactions_with, started_at
 from reports.search import motions
 from reports.search.mechanisms import mechanism
 from reports.search.parts import ALL_KINDS
@@ -41,7 +38,6 @@ from reports.search.recipe import build
 from reports.search.subjects import Adapted
 from tests.engines.test_promised import QUICKLY, installed, meshed, shipped
 from tests.mechanisms import ALONE
-from tests.present import present
 
 NAMES = tuple(dict.fromkeys(engine.name for engine in QUICKLY))
 
@@ -96,21 +92,6 @@ def test_the_warning_of_a_diverged_run_has_its_time(sample):
     run = single_run.SingleRun(body, 0.5, Size(1, 3, 0, 0), lambda samples, every: recorded)(2, 1)
     assert run.warnings == (f"ours: at {0.5 * sample:g} s the engine holds no numbers any more",)
     np.testing.assert_array_equal(np.isnan(run.pose).all(axis=(1, 2)), np.arange(3) >= sample)
-
-
-def test_accelerations_of_a_run_that_ends_early_have_the_shape_of_its_samples():
-    for lost_after in range(1, 6):
-        steps = 0
-
-        def advance(count: int, lost_after: int = lost_after) -> bool:
-            nonlocal steps
-            steps += count
-            return steps >= lost_after
-
-        position, velocity, acceleration, _ = sampled_with_differences(
-            (2, 3), 1.0, advance, lambda: (np.zeros(2), np.zeros(2)), lambda: np.zeros(2)
-        )
-        assert position.shape == velocity.shape == acceleration.shape
 
 
 def test_exudyns_reactions_need_consistent_accelerations_at_the_start():
@@ -309,33 +290,6 @@ def test_a_residual_of_the_solver_is_a_warning():
     assert [warning.startswith("ours: the solver missed the accelerations") for warning in run.warnings] == [True]
     mended = replace(MJX, settings=replace(MJX.settings, tolerance=1e-28))
     assert mended.build(geared(500.0, 500.0, 1e-6, (-1e-3, 9e-4)), 12.0)(4, 10).warnings == ()
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("with_mjx")
-def test_forces_of_loops_follow_from_the_compliance_without_the_velocity_term():
-    # The law is (A + R) f = b. R is `efc_R` of the compiled model, and b may contain the velocity term J-dot v.
-    scene = BY_NAME["free_four_bar"]
-    truth = scene.motion(np.linspace(0.2, 1.0, 4) * scene.duration)
-    for pose, twist in zip(truth.pose, truth.twist, strict=True):
-        now = started_at(scene.mechanism(), pose, twist)
-        soft = present(MJX_TUNED.regularisation(now, 1e-3))
-        model = MJX_TUNED.settings.model(now, 1e-3)
-        declared = np.zeros(now.row_count)
-        # The third row of a connect constraint is normal to the plane. The masses in the model have the unit
-        # `model.unit`.
-        declared[np.flatnonzero(soft.rows)] = model.start().efc_R[:2] / model.unit
-        run = MJX_TUNED.build(now, 1e-3)(1, 1).reaction[0]
-        largest = np.abs(run).max()
-        assert np.abs(run - reactions_with(now, soft.rows, False, declared)).max() < 1e-9 * largest
-        assert np.abs(run - reactions_with(now, soft.rows, True, declared)).max() > 1e-3 * largest
-        # Without R the relative error of the law is at most |R| divided by the smallest eigenvalue of A.
-        weight = 1 / now.inertias.reshape(-1)
-        rows = now.rows(now.pose)
-        effective_mass = np.linalg.inv((rows * weight) @ rows.T)[np.ix_(soft.rows, soft.rows)]
-        bound = declared.max() * np.linalg.eigvalsh(effective_mass).max()
-        assert bound < 1e-3
-        assert np.abs(run - reactions_with(now, soft.rows, False)).max() < bound * largest
 
 
 # One element for each construction in the model, such as tendons, actuators and equalities, and a tree.

@@ -6,8 +6,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from dataclasses import replace
 from functools import cache
 
@@ -36,7 +34,6 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
 from reference.scenes.wheels.vehicles import CarAndTrailer
 from reference.trajectory import Trajectory
-from tests import ROOT
 from tests.engines.test_matrix import blade_on_a_board
 from tests.mechanisms import elbow, four_bar, pendulum, rolling_disc
 
@@ -140,16 +137,6 @@ def test_the_bare_loop_makes_all_steps_of_a_run(engine, levels, monkeypatch):
     assert steps == [20 * level for level in levels]
 
 
-def test_the_import_of_the_engines_leaves_no_space_or_body():
-    code = """
-import gc, pymunk, engines.registry
-gc.collect()
-print([each for each in gc.get_objects() if isinstance(each, (pymunk.Space, pymunk.Body))])
-"""
-    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert (run.returncode, run.stdout, run.stderr) == (0, "[]\n", "")
-
-
 ELLIPSE, DISC, HILL = RollingEllipse(), RollingDisc(), RollingOnCircle()
 SLEIGH = ChaplyginSleigh()
 
@@ -192,15 +179,6 @@ def test_the_error_of_a_polygon_falls_with_its_corners_and_not_with_the_step():
             assert fine == pytest.approx(coarse, rel=0.1)  # The step has little effect.
     assert plateaus[8] > plateaus[32] > plateaus[128] > plateaus[512] > 0.03
     assert plateaus[512] < 0.2
-
-
-def test_upstream_a_fine_polygon_stops_on_ground_without_thickness():
-    """Chipmunk computes wrong normals for some contacts on a segment without a radius."""
-    fine = methods.ROLL_FACETED[-1]
-    on_thin_ground = replace(fine, contact=replace(fine.contact, thickness=0.0))
-    thin, thick = (run(engine, ELLIPSE, 10).twist[5, 0, 2] for engine in (on_thin_ground, fine))
-    assert abs(thin) < 0.1
-    assert thick == pytest.approx(truth(ELLIPSE).twist[5, 0, 2], rel=0.05)
 
 
 def test_a_round_body_leaves_the_hill_where_the_contact_force_becomes_zero():

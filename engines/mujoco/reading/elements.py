@@ -84,7 +84,6 @@ def drives(planar: PlanarModel) -> list[Drive]:
 
 
 def equalities(planar: PlanarModel) -> list[Joint]:
-    """The ideal joints of the model's equalities, which close loops and couple coordinates."""
     model, data = planar.model, planar.data
     flags = mujoco.mjtDisableBit.mjDSBL_EQUALITY | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     out: list[Joint] = []
@@ -218,7 +217,6 @@ def _read_coupling(planar: PlanarModel, index: int, element: str) -> list[Joint]
 
 
 def _read_sum(planar: PlanarModel, index: int, element: str, parts: WeightedJoints, open_by: float) -> list[Joint]:
-    """The ideal joint of an equality that keeps a sum of coordinates constant; `open_by` is the gap [m or rad]."""
     if np.any(planar.model.eq_data[index][2:5]):
         raise refuse(element, "a coupling that is not linear has no ideal counterpart here")
     slides = any(planar.model.jnt_type[joint] != HINGE for joint, _ in parts)

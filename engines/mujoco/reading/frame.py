@@ -79,7 +79,6 @@ def find_frame(model: Any, data: Any) -> Frame:
 
 
 def _refuse_tilted_joints(model: Any, data: Any, normal: Array) -> None:
-    """Raise Unsupported for a hinge that is not along the normal, or a slide that is not perpendicular to it."""
     hinges = np.flatnonzero(model.jnt_type == HINGE)
     for index in np.flatnonzero((model.jnt_type == HINGE) | (model.jnt_type == SLIDE)):
         is_hinge = model.jnt_type[index] == HINGE
@@ -137,8 +136,6 @@ def _normal_to_slides(model: Any, data: Any, slides: Any) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """Groups of MuJoCo bodies that are fixed to each other. A group is a body of the mechanism."""
-
     of: Array  # The group of each MuJoCo body (nbody,), -1 for the ground.
     roots: tuple[int, ...]  # MuJoCo body with the group's joints, by group.
     centres: Array  # Centres of mass (groups, 3) [m] in the frames of `roots`.
@@ -161,7 +158,6 @@ def find_bodies(model: Any, data: Any, frame: Frame) -> tuple[Groups, tuple[Body
 
 
 def _body(model: Any, data: Any, frame: Frame, groups: Groups, index: int, angle: float) -> Body:
-    """The mechanism's body for a group; the centre of mass is also written to `groups`."""
     root, parts = groups.roots[index], np.flatnonzero(groups.of == index)
     element, masses = name_of(model, BODY, root), model.body_mass[parts]
     if not masses.sum() > 0:
@@ -238,7 +234,6 @@ class PlanarModel:
         return self.group(self.model.jnt_bodyid[joint])
 
     def parent(self, joint: int) -> int:
-        """The parent group of the group that a joint moves."""
         return self.group(self.model.body_parentid[self.model.jnt_bodyid[joint]])
 
     def name(self, group: int) -> str | None:
@@ -261,11 +256,9 @@ class PlanarModel:
         return float(cosine * x + sine * y), float(cosine * y - sine * x)
 
     def between(self, first: int, second: int, at: Any, other: Any) -> tuple[str | None, str | None, Vector, Vector]:
-        """The names of two groups, and the coordinates of two points of the world in the groups' frames."""
         return self.name(first), self.name(second), self.in_body(first, at), self.in_body(second, other)
 
     def direction(self, group: int, axis: Any) -> float:
-        """The angle [rad] of a direction of the world in the frame of a group."""
         x, y = self.frame.in_plane(axis)
         return float(np.arctan2(y, x)) - self.angle(group)
 

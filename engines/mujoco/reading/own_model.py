@@ -34,7 +34,6 @@ LIMIT_ROWS = {
 
 
 def in_state(model: Any, state: Any) -> Any:
-    """A new mujoco.MjData with the positions, velocities and inputs of `state`."""
     data = mujoco.MjData(model)
     for name in STATE:
         getattr(data, name)[:] = getattr(state, name)
@@ -99,8 +98,6 @@ def _at_limits(model: Any, data: Any) -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class OwnMuJoCo:
-    """A compiled model and its initial state; see `engines.reading.OwnModel`."""
-
     planar: PlanarModel  # model whose joints move exactly in the plane
     mechanism: Mechanism
     users: Any  # The user's model, which is run.
@@ -264,7 +261,6 @@ class OwnMuJoCo:
         return Trajectory(t, pose, twist, reaction, stepping, warnings, reset_at)
 
     def _read(self, model: Any, qpos: Array, qvel: Array, count: int) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (count, bodies, 3) of the states, or NaN after the last state."""
         pose, twist, acceleration = np.full((3, count, len(self.mechanism.bodies), 3), np.nan)
         data = self._own_start(model)
         if len(qpos):
@@ -293,7 +289,6 @@ class OwnMuJoCo:
         data.qvel[:] = np.linalg.lstsq(columns, twist.reshape(-1), rcond=None)[0]
 
     def _motion(self, model: Any, data: Any) -> tuple[Array, Array]:
-        """Twists and accelerations (bodies, 3) in the state of `data`, after mj_forward."""
         frame, out = self.planar.frame, np.zeros((2, len(self.mechanism.bodies), 3))
         jac, rate = np.zeros((2, 2, 3, model.nv))
         for index, (root, centre) in enumerate(zip(self.planar.groups.roots, centres(self.planar, data), strict=True)):

@@ -108,7 +108,6 @@ def _equality_rows(planar: PlanarModel, equality: int, ideal: list[int], ours: A
 
 
 def _diagonal(data: Any, equality: int) -> Array:
-    """MuJoCo's estimate (rows,) of the inverse inertia of the rows of an equality."""
     rows = equality_rows(data, equality)
     impedance = data.efc_KBIP[rows, 2]
     return data.efc_R[rows] * impedance / (1 - impedance)
@@ -221,7 +220,6 @@ def rewritten(source: bytes, change: Change) -> bytes:
 
 
 def _tags(source: bytes) -> list[Tag]:
-    """The start tags of all elements in the order of the file. Raises Unsupported if the file is no XML."""
     parser, path, tags = expat.ParserCreate(), list[str](), list[Tag]()
 
     def on_start(name: str, attributes: dict[str, str]) -> None:

@@ -90,8 +90,6 @@ def groove_is_exact(point: Vector, turns: bool) -> bool:
 
 
 class MovedPinJoint:
-    """The pin joint of a Slot or a Skate; points [m] are relative to the origins of the pymunk bodies."""
-
     def __init__(
         self,
         joint: Slot | Skate,
@@ -111,7 +109,6 @@ class MovedPinJoint:
         self._angle = joint.line_angle if isinstance(joint, Slot) else joint.angle
 
     def __call__(self, ahead: float) -> None:
-        """Place the joint for the poses after a drift of `ahead` [units of time]."""
         (x1, y1, angle1), (x2, y2, angle2) = (drifted(body, ahead) for body in self._bodies)
         cosine, sine = cos(angle2), sin(angle2)
         x, y = self._point

@@ -58,8 +58,6 @@ class ScriptSpace:
 
 
 class _SpaceStepped(BaseException):
-    """Stops a script at the first step of its space, or at the step after a half step."""
-
     def __init__(self, space: Any, dt: float, ahead: bool = False) -> None:
         super().__init__("the script steps its space")
         self.space, self.dt, self.ahead = space, dt, ahead
@@ -123,7 +121,6 @@ def _with_parts(script: ScriptSpace) -> ScriptSpace:
 
 @contextlib.contextmanager
 def _errors_in_one_line(path: Path, file: str) -> Iterator[None]:
-    """Replace every exception of the user's code by a ValueError with a message of one line."""
     try:
         yield
     except _SpaceStepped:
@@ -139,7 +136,6 @@ def _errors_in_one_line(path: Path, file: str) -> Iterator[None]:
 
 
 def _value_of(module: types.ModuleType, file: str, name: str) -> tuple[Any, str]:
-    """The value `name` in a module, or the only space if `name` is empty, and the name of the value."""
     values = vars(module)
     if name:
         if name not in values:
@@ -187,8 +183,6 @@ def _as_main_script(path: Path, module: types.ModuleType) -> Iterator[None]:
 
 @dataclass
 class _FirstStep:
-    """The velocities before the first step of a space, which may be a half step that advances the velocities."""
-
     space: Any = None
     velocities: tuple[tuple[Any, float], ...] = ()
     by_lines: bool = False  # whether the script moves the bodies back, or replaces their position function
