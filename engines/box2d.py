@@ -25,9 +25,8 @@ steps have noisier reactions.
 
 The engine reduces a rate above an eighth of a turn per step, and the run then has a warning.
 
-The engine uses single precision. Errors of positions below about 1e-6 of the motion are rounding. The adapter computes
-angles and rotations itself, since the engine's functions have errors of 1.6e-3 and 3e-5 rad. The adapter also counts
-whole turns, which a rotation does not contain.
+The engine uses single precision. The adapter computes angles and rotations itself, since the engine's functions have
+errors of 1.6e-3 and 3e-5 rad. The adapter also counts whole turns, which a rotation does not contain.
 """
 
 from __future__ import annotations
@@ -191,9 +190,7 @@ BOX2D_JOINTS: Mapping[type, Callable[[Box2DWorld, Any], Any]] = {
 
 @dataclass(frozen=True)
 class Box2D(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    substeps: number of sub-steps in a step; the engine's manual recommends 4.
+    """substeps: number of sub-steps in a step; the engine's manual recommends 4.
     closing: frequency of pins, welds and rods times the sub-step h; 0 for the frequency as shipped.
     """
 

@@ -63,9 +63,7 @@ BULLET_JOINTS = {Pin: "JOINT_POINT2POINT", Weld: "JOINT_FIXED", Slot: "", Drive:
 
 @dataclass(frozen=True)
 class Bullet(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    iterations: largest number of the solver's iterations over the rows.
+    """iterations: largest number of the solver's iterations over the rows.
     residual: tolerance of the solver's residual.
     erp: share of a gap that a step closes.
     """
@@ -94,8 +92,7 @@ class Bullet(ExtraEngine):
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         """Order 1, since the method is semi-implicit Euler; joints of the tree have no gap.
 
-        No order is declared for loops in a prescribed motion. The only error of such loops is the slip at which the
-        iterations end, which does not depend on the step.
+        No order is declared for loops in a prescribed motion: their only error is the slip at which iterations end.
         """
         loops = spanning_tree(mechanism).loops
         if loops and is_prescribed(mechanism) and self.residual:

@@ -50,8 +50,6 @@ class Capability:
         elements.
     lacks: why the adapter does not build a class.
     lacks_in_loops: why the adapter does not build a class of joints that closes a loop of the tree.
-
-    The adapter also refuses a class that has none of these entries.
     """
 
     engine: str

@@ -1,8 +1,7 @@
 """A start that satisfies ideal joints, for a model whose own start does not.
 
 In a file whose positions have six digits, joints are open by about a millionth of the length. Newton's method with M^-1
-J^T then finds the positions that close all joints. These positions have the smallest distance in the norm of the mass
-matrix M.
+J^T then finds the positions that close all joints.
 
 In most scripts of games the bodies on a motor are at rest at t = 0. Ideal joints then change the velocities v0 to v by
 an impulse. By Gauss's principle, v minimises (v - v0)^T M (v - v0) / 2 subject to J v = rate.

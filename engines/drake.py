@@ -68,10 +68,7 @@ STEP_LIMIT = 1.5
 
 @dataclass(frozen=True)
 class Drake(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    scheme: "discrete" (SAP), or the integrator of a plant in continuous time.
-    """
+    """scheme: "discrete" (SAP), or the integrator of a plant in continuous time."""
 
     name = "drake"
     packages = ("drake",)

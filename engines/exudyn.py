@@ -49,9 +49,7 @@ EXUDYN_STEP_COST = 19e-6
 
 @dataclass(frozen=True)
 class Exudyn(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    relative, absolute: tolerances of Newton's method.
+    """relative, absolute: tolerances of Newton's method.
     damping: spectral radius of GeneralizedAlpha at infinite frequency; 1 means no damping.
     consistent: pass initial accelerations to the engine, which then does not compute them.
     sparse: use a sparse factorisation in Newton's method.

@@ -7,17 +7,14 @@ contains the bodies' velocities of the previous evaluation, since `fwd_position`
 twice, so that the term contains the velocities of this state.
 
 The adapter captures a step as a graph and launches it again, as the documentation recommends for a GPU
-(`mujoco.readthedocs.io`, "MuJoCo Warp"). Warp 1.19 captures on the processor too. An Euler step of the free four-bar
-then takes 17 us instead of 3 ms, and its result has the same bits.
+(`mujoco.readthedocs.io`, "MuJoCo Warp").
 
 Rounding determines the settings of *tuned*. In single precision a loop is open by about 6e-8 m. With a time constant of
 5 ms, this gap causes an acceleration of 2.5e-3 m/s^2, which is 0.4 % of the first acceleration of a four-bar. A small
 compliance also makes the solver's equations ill-conditioned. Therefore the stiffest `solimp`, 0.9999, is not the best.
-For the four-bar in README (RK4, 1 ms) it gives an error of 2.1e-4 rad, but 4e-5 rad with `solimp` 0.997 and a time
-constant of 2.5 steps. From 0.99 to 0.999 the errors differ by less than a factor of three. `put_model` raises the
-solver's tolerance to at least 1e-6. Without a tolerance a step takes ten times as long, and the error is not smaller.
-Our adapter sets the tolerance after `put_model`, relative to the inertia of the coordinates without drives
-(`engines.mujoco.model`). Otherwise the large inertia of a drive would end the solver at once.
+`put_model` raises the solver's tolerance to at least 1e-6. Without a tolerance a step takes ten times as long, and the
+error is not smaller. Our adapter sets the tolerance after `put_model`, relative to the inertia of the coordinates
+without drives (`engines.mujoco.model`). Otherwise the large inertia of a drive would end the solver at once.
 
 Warp compiles kernels at their first use. The compilation takes minutes for the first model on a computer, and seconds
 for a model of another structure. Warp's variable WARP_CACHE_PATH names the folder of the compiled kernels.

@@ -7,13 +7,13 @@ passes them as forces on bodies. Accelerations are changes of velocity over the 
 The following errors are those of the four-bar in README at 1 ms. *default* is Kamino as shipped, with the backend PADMM
 and `alpha` 0.01. A step closes 1 % of a gap, and the error is 0.074 rad. *tuned* is Kamino with the backend LOX, which
 Newton calls experimental. LOX has an error of 5.7e-3 rad, which falls with the step, and takes a tenth of the time.
-*whole gap* is PADMM with `alpha` 1, and its error is 7.1e-3 rad. At 0.25 ms PADMM has an error of 2e-3 rad with any
-`alpha`, and the backend DVI has an error of 0.06 rad. *xpbd* is XPBD as shipped, with 2 iterations and an error of 0.73
-rad. With 200 iterations and a quarter of the step, its error is 0.50 rad. With larger relaxations the loop opens.
+*whole gap* is PADMM with `alpha` 1, and its error is 7.1e-3 rad. *xpbd* is XPBD as shipped, with 2 iterations and an
+error of 0.73 rad. With 200 iterations and a quarter of the step, its error is 0.50 rad. With larger relaxations the
+loop opens.
 
 If a model has no contacts, Kamino allocates matrices for 1000 contacts, and a step takes 50 ms. Our adapter sets the
-model's `rigid_contact_max` to 1. A step then takes 1.5 ms and has the same results. The adapter captures a step as a
-graph (`warp.ScopedCapture`), as Newton's examples do on a GPU.
+model's `rigid_contact_max` to 1. The adapter captures a step as a graph (`warp.ScopedCapture`), as Newton's examples do
+on a GPU.
 
 The adapter refuses Newton's other solvers. `SolverMuJoCo` is MuJoCo Warp, which is a separate engine here.
 `SolverFeatherstone` ignores a joint that closes a loop without a message. The adapter also refuses two joints between
@@ -53,9 +53,7 @@ NEWTON_STEP_COSTS = {"padmm": 1.5e-3, "dvi": 0.2e-3, "lox": 0.16e-3, "xpbd": 5e-
 
 @dataclass(frozen=True)
 class Newton(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    backend: backend of Kamino.
+    """backend: backend of Kamino.
     alpha: fraction of a gap that a step of Kamino closes; LOX does not use `alpha`.
     iterations: number of iterations of XPBD.
     """

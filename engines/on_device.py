@@ -43,9 +43,7 @@ def without_contacts(engine: str, title: str) -> Capability:
 
 @dataclass(frozen=True)
 class MuJoCoOnDevice(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    settings: MuJoCo method that provides the model and options.
+    """settings: MuJoCo method that provides the model and options.
     title: the engine's name in sentences.
     evaluation_cost: CPU time [s] of an evaluation of three bodies, without compilation.
     """

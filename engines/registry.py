@@ -5,7 +5,6 @@ further methods, which show the effect of single settings. The value of an entry
 of engines.
 
 An entry point with an extra, such as `engines.exudyn:VARIANTS [exudyn]`, belongs to an engine that few users install.
-The reports compare these engines (OTHERS) at a few steps in separate tables.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ Cached = TypeVar("Cached", bound=Callable[..., Any])
 def by_identity(size: int = 8) -> Callable[[Cached], Cached]:
     """Cache the last `size` results of a function; the first argument is compared by identity.
 
-    A comparison of all numbers of two mechanisms would be slow. Calls with keyword arguments are not cached.
+    Calls with keyword arguments are not cached.
     """
 
     def with_cache(function: Cached) -> Cached:

@@ -1,8 +1,7 @@
 """The position of a rolling body as a fast function of its rotation.
 
-`reference.rolling` computes contacts for arrays of rotations. One call of `reference.rolling` takes longer than a
-hundred steps of an engine. This module has closed forms for two round curves and for a round curve on a line. For other
-pairs of curves, a table of polynomials interpolates exact contacts.
+`reference.rolling` computes contacts for arrays of rotations. This module has closed forms for two round curves and for
+a round curve on a line. For other pairs of curves, a table of polynomials interpolates exact contacts.
 
 Vectors are complex numbers x + i y. The body's origin in the frame of the ground is P = point + a with the arm a =
 r_{O'/C}. The derivatives of P by the rotation theta are P' = i a (18.66) and P'' = s' e_n - a, where s is the arc

@@ -22,11 +22,9 @@ def sampled(
 ) -> float:
     """Step a model, record its states, and return the CPU time [s] of stepping and recording.
 
-    steps: number of steps before each sample after the first.
-    advance(count): takes `count` steps.
-    record(sample): stores the state of a sample.
-    record_before(sample): stores values one step before a sample.
-    The loop ends early if `advance` or `record` returns True. The CPU time excludes the recording of the start.
+    steps: number of steps before each sample after the first. advance(count): takes `count` steps. record(sample):
+    stores the state of a sample. record_before(sample): stores values one step before a sample. The loop ends early if
+    `advance` or `record` returns True.
     """
     counts = list(steps)
     record(0)

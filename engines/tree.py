@@ -34,8 +34,8 @@ TREE_FORCES_COST = 250e-6
 class Link:
     """A body in the tree, which is free or has a pin, weld or slot to its parent.
 
-    A free body has the coordinates x, y and rotation. A hinge is a pin, with a rotation, or a weld, without
-    coordinates. A body in a slot has a displacement along the slot and, if it `turns`, a rotation.
+    A free body has the coordinates x, y and rotation. A body in a slot has a displacement along the slot and, if it
+    `turns`, a rotation.
 
     parent: index of the parent body, or None for the ground.
     column: index of the body's first tree coordinate.
@@ -184,10 +184,7 @@ class Tree:
         return pose, twist, change
 
     def instant(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Poses and twists (bodies, 3) from tree coordinates and rates (coordinates,), or NaN if a value is not finite.
-
-        Python floats are ten times as fast here as arrays in `motion`.
-        """
+        """Poses and twists (bodies, 3) from tree coordinates and rates (coordinates,), NaN if a value is not finite."""
         if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
             pose, twist = np.full((2, len(self.mechanism.bodies), 3), math.nan)
             return pose, twist
@@ -243,8 +240,7 @@ class Tree:
 def pushes(tree: Tree, position: Array, velocity: Array) -> tuple[Array, Array]:
     """Poses (bodies, 3) [m, m, rad], and the loads of force elements on bodies (bodies, 3) [N, N, N m].
 
-    Adapters of engines without such springs apply these loads before each step. position and velocity (coordinates,)
-    are tree coordinates [m, rad] and rates. If a value is not finite, results are NaN.
+    If a value is not finite, results are NaN.
     """
     pose, twist = tree.instant(position, velocity)
     return pose, np.asarray(tree.mechanism.applied.on(pose, twist), dtype=np.float64)

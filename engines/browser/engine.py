@@ -1,8 +1,7 @@
 """Physics engines of the browser under test: planck and p2 in JavaScript, Rapier and Jolt as WebAssembly.
 
-A child process of Node runs `worlds.mjs`, which builds and steps the worlds. Node compiles code during a run. Therefore
-the child lives as long as this process. `python -m engines.browser` installs the packages of npm into the user's cache
-folder.
+A child process of Node runs `worlds.mjs`, which builds and steps the worlds. The child lives as long as this
+process. `python -m engines.browser` installs the packages of npm into the user's cache folder.
 
 The adapter switches off damping, which removes 10 % (p2) or 5 % (Jolt) of the velocity per second as shipped. Bodies do
 not sleep or collide. A Pin is a revolute joint or a hinge, a Weld is a fixed joint, and a Rod is a distance joint. A
@@ -121,10 +120,7 @@ _children: dict[tuple[str, Settings], Child] = {}
 
 
 def child_of(engine: str, settings: Settings) -> Child:
-    """The process of an engine with these settings, which is started at the first use and again after its end.
-
-    Some settings are global in a process, so two variants do not share a process.
-    """
+    """The process of an engine with these settings, which is started at the first use and again after its end."""
     child = _children.get((engine, settings))
     if child is not None and child.process.poll() is None:
         return child
@@ -212,10 +208,7 @@ class BrowserWorld:
 
 @dataclass(frozen=True)
 class BrowserEngine(ExtraEngine):
-    """An engine in the sense of `engines.Engine`.
-
-    settings: parameters of the engine by name.
-    """
+    """settings: parameters of the engine by name."""
 
     forces_by: ClassVar[Enforcement] = "ours"
     steps_in_child: ClassVar[bool] = True

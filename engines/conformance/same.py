@@ -1,7 +1,6 @@
 """Checks that a motion does not depend on the description of the mechanism.
 
-A mechanism is rotated, shifted, mirrored, relabelled or reordered, or the two bodies of its joints are swapped. After
-the inverse change the results must be equal.
+A mechanism is rotated, shifted, mirrored, relabelled or reordered, or the two bodies of its joints are swapped.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """Small mechanisms whose exact motions are known in closed form.
 
-The formulas are independent of scenes and engines. Units are kg, m, s, rad, N and N m. Vectors of the plane are complex
-numbers x + i y.
+Units are kg, m, s, rad, N and N m. Vectors of the plane are complex numbers x + i y.
 """
 
 from __future__ import annotations

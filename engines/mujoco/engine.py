@@ -49,12 +49,12 @@ class MuJoCo(Engine, Valid):
     """Settings of MuJoCo; raises ValueError for invalid settings.
 
     `coordinates`: with "tree" a body moves relative to its parent in a kinematic tree, and only loops need constraints.
-    With "free" every body has three coordinates, and every pin is a constraint. `drive`, `slots`, `skates`, `rolls`,
-    `rods`: constructions of these joints, see `engines.mujoco.joints`. `armature`: armature of a driven joint relative
-    to the inertia of the mechanism; the relative error of the rate is about 0.1 / armature. `solvers`: the first of
-    these solvers that solves the equations at t = 0 is used. `tolerance`: tolerance of the solver, relative to the
-    inertia of the coordinates without drives. `estimates`: whether methods of order 4 estimate their error, see
-    `engines.mujoco.step_doubling`. If an estimate exceeds `engines.CLAIM`, the motion is unresolved.
+    `drive`, `slots`, `skates`, `rolls`, `rods`: constructions of these joints, see `engines.mujoco.joints`. `armature`:
+    armature of a driven joint relative to the inertia of the mechanism; the relative error of the rate is about 0.1 /
+    armature. `solvers`: the first of these solvers that solves the equations at t = 0 is used. `tolerance`: tolerance
+    of the solver, relative to the inertia of the coordinates without drives. `estimates`: whether methods of order 4
+    estimate their error, see `engines.mujoco.step_doubling`. If an estimate exceeds `engines.CLAIM`, the motion is
+    unresolved.
     """
 
     name = "mujoco"

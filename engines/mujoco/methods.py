@@ -1,7 +1,4 @@
-"""The methods of MuJoCo. METHODS are for all scenes, and the other methods compare constructions of a joint.
-
-The constructions of joints are in `engines.mujoco.joints`.
-"""
+"""The methods of MuJoCo. METHODS are for all scenes, and the other methods compare constructions of a joint."""
 
 from __future__ import annotations
 

@@ -67,10 +67,7 @@ class MuJoCoModel:
 
     @contextmanager
     def callback_installed(self) -> Iterator[None]:
-        """Install the model's callback, which every step and every evaluation needs.
-
-        MuJoCo's callback is global. The previous callback is restored at the end, also after an exception.
-        """
+        """Install the model's callback, which every step and every evaluation needs; it is global in MuJoCo."""
         previous = mujoco.get_mjcb_control()
         mujoco.set_mjcb_control(self.hooks.control)
         try:
@@ -218,9 +215,8 @@ def _add_bodies(spec: Any, tree: Tree) -> None:
 def _scale_tolerance_by_free_inertia(compiled: Any, steady: list[int]) -> None:
     """Make the solver's tolerance relative to the inertia without the coordinates `steady`.
 
-    MuJoCo's tolerance is relative to the sum of the diagonal of the mass matrix. Up to version 3.12 MuJoCo evaluates
-    the sum at t = 0; version 4.0.1 evaluates it in the current state (`mj_solPrimal` in engine_solver.c). With an
-    armature of 1e8 in the sum, the solver would end at once although its accelerations have an error of 100 %.
+    MuJoCo's tolerance is relative to the sum of the diagonal of the mass matrix. With an armature of 1e8 in the sum,
+    the solver would end at once although its accelerations have an error of 100 %.
     """
     free = np.delete(compiled.dof_M0, steady)
     if steady and len(free):

@@ -85,8 +85,8 @@ class MuJoCoRun(OneShot):
     def __call__(self, samples: Count, every: Count) -> Trajectory:
         """Make samples * every steps. Raises ValueError for invalid counts, and RuntimeError at the second call.
 
-        The error is also estimated at ESTIMATE_INSTANTS instants that do not depend on the samples. These instants
-        determine whether a third run is necessary. `stepping` is the CPU time of all runs.
+        The error is also estimated at ESTIMATE_INSTANTS instants that do not depend on the samples. `stepping` is the
+        CPU time of all runs.
         """
         self.model.mechanism.require_room(samples)
         self.begin()

@@ -49,9 +49,8 @@ class Pymunk(Engine, Valid):
     iterations only if the product of iterations and joints is at most `max_work`. `startup_steps`: number of steps in
     each stage of the start-up, in which the iterations decrease; 0 for no start-up.
 
-    `leapfrog`: start with half a kick and average the velocities. The steps then skip the checks of `Space.step`, which
-    concern changes of the model. `skate`, `roll`, `slot`: constructions of these joints (`joints.slide` and
-    `joints.roll`). `contact`: settings of contacts for a Roll.
+    `leapfrog`: start with half a kick and average the velocities. `skate`, `roll`, `slot`: constructions of these
+    joints (`joints.slide` and `joints.roll`). `contact`: settings of contacts for a Roll.
 
     A model with a `gain` below 1 uses the step as the unit of time. In seconds, the error_bias would underflow to 0
     (gain 1) for small steps.

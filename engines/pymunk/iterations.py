@@ -1,7 +1,4 @@
-"""The iterations in a step of pymunk and the corrected fraction of a gap, for the worst pose of a motion.
-
-Approximate poses are sufficient and come from a pilot run with soft joints and long steps.
-"""
+"""The iterations in a step of pymunk and the corrected fraction of a gap, for the worst pose of a motion."""
 
 from __future__ import annotations
 
@@ -72,8 +69,7 @@ class IterationPlan:
     def startup(self, steps: int) -> list[int]:
         """The iterations of the first steps, which decrease from `converged` in stages of `steps` steps each.
 
-        Each change of the iterations disturbs the error expansion, but small changes disturb it little. In an
-        extrapolation, `steps` is such that a stage ends at the same time in all runs.
+        In an extrapolation, `steps` is such that a stage ends at the same time in all runs.
         """
         first = [self.converged, *[ceil(self.converged / 2)] * (steps - 1)][:steps]
         if not 0 < self.residual <= RESIDUAL:

@@ -114,10 +114,7 @@ if __name__ == "__main__":
 
 
 def _push_function(mechanism: Mechanism, forces: Sequence[Force | Torque], bodies: Sequence[pymunk.Body]) -> str:
-    """The text of a function that sets the constant forces and torques, or "" if there are no such loads.
-
-    The script calls the function before every step, since a step of pymunk resets forces and torques.
-    """
+    """The text of a function that sets the constant forces and torques, or "" if there are no such loads."""
     pushed = np.zeros((len(bodies), 3))
     for force in forces:
         if isinstance(force, Force):

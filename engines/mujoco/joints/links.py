@@ -149,7 +149,7 @@ def add_slots(builder: ModelBuilder, slots: Sequence[Slot]) -> None:
 def free_link_on_fixed_line(slot: Slot, tree: Tree) -> Link | None:
     """The link of the slot's second body, if it is free and the slot keeps its centre of mass on a line of the ground.
 
-    The gap of such a slot is a sum of two coordinates with constant factors. The result is None for other slots.
+    The result is None for other slots.
     """
     link = next((link for link in tree.links if tree.mechanism.bodies[link.body].name == slot.second), None)
     if slot.first is None and link is not None and link.kind == "free" and not any(slot.second_point):
@@ -164,12 +164,7 @@ def _add_tendon(builder: ModelBuilder, slot: Slot, column: int) -> None:
 
 
 def _add_half(builder: ModelBuilder, slot: Slot) -> None:
-    """Let a half of the second body slide and turn in the first body, and weld it to the other half.
-
-    The halves are equal, since a lighter half would increase the compliance of the weld. If the second body is the
-    ground, the auxiliary body does not move. The auxiliary body then has half the mass of the first body, which has no
-    effect.
-    """
+    """Let a half of the second body slide and turn in the first body, and weld it to the other half."""
     spec, mechanism = builder.spec, builder.mechanism
     first, second = builder.index(slot.first), builder.index(slot.second)
     base = np.zeros(3) if first is None else mechanism.pose[first]

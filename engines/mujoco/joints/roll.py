@@ -99,8 +99,7 @@ def _add_contacts(builder: ModelBuilder, rolls: Sequence[Roll], by: RollContact)
 def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curve) -> str:
     """Add a plane, a sphere or an ellipsoid for the curve of a body, and return the name of the geom.
 
-    Body frames are parallel to the world at t = 0 (`engines.tree`), so a shape is turned by the body's initial angle. A
-    circle is a sphere, since a cylinder would touch at two points. Raises Unsupported for other curves.
+    A circle is a sphere, since a cylinder would touch at two points. Raises Unsupported for other curves.
     """
     curve, shift, angle = unplaced(curve)
     index, body = builder.index(owner), builder.spec_body(owner)
@@ -149,9 +148,8 @@ def roll_warnings(
 ) -> list[RunWarning]:
     """Warnings if a contact is lost, or if it moves along the curves too fast for the step [s].
 
-    t (times,); pose and twist (times, bodies, 3); reaction (times, rows). A contact moves along the curves with the
-    speed omega / (curvature_A + curvature_B), which is large for nearly conformal curves. In a step the contact turns
-    by omega dt / conformality, and this angle must be small.
+    t (times,); pose and twist (times, bodies, 3); reaction (times, rows). In a step the contact turns by omega dt /
+    conformality, and this angle must be small.
     """
     warnings, begin = list[RunWarning](), 0
 

@@ -1,6 +1,6 @@
 """Constructions of a skate, for which MuJoCo has no joint. `SkateBy` is one of three constructions.
 
-- "blade": a capsule that touches a plane, with friction across the capsule. MuJoCo's maintainers suggest a capsule.
+- "blade": a capsule that touches a plane, with friction across the capsule.
 - "predicted tendon": a fixed tendon whose coefficients are the row of the skate. Our code computes the coefficients
   before every step, for the pose that the velocity predicts at the end of the step.
 - "rows": a row for the skate that a callback writes in every stage.
@@ -165,8 +165,7 @@ def _raise_ground(compiled: Any, _address: Sequence[int]) -> Hooks:
 def _lengthen_blades(compiled: Any, data: Any, carries: Callable[[float], bool]) -> float:
     """Double the blades' length until `carries` is true for the height [m] of the upper ends, and return this height.
 
-    `carries(depth)` is whether the ground carries the weight at a depth [m]. An upper end below the ground would be a
-    second contact.
+    `carries(depth)` is whether the ground carries the weight at a depth [m].
     """
     blades = [geom for geom in range(compiled.ngeom) if compiled.geom(geom).name.startswith("blade ")]
     height = 2 * float(compiled.geom_size[blades[0], 1]) * math.sin(TILT)

@@ -34,8 +34,7 @@ MIN_IMPEDANCE, MAX_IMPEDANCE = 1e-4, 0.9999  # mjMINIMP and mjMAXIMP
 class _EqualityRows:
     """The rows of an equality, and the rows of the mechanism that the equality enforces.
 
-    An entry of `blocks` has a slice of the equality's rows, a slice of `ideal`, and a matrix. The matrix times the
-    mechanism's rows in the slice gives the equality's rows.
+    An entry of `blocks` has a slice of the equality's rows, a slice of `ideal`, and a matrix.
     """
 
     equality: int
@@ -52,11 +51,10 @@ def declared(
 ) -> Callable[[Array, Array], RowRegularisation]:
     """The regularisation of the rows as a function of gaps (rows,) [m, rad] and a pose (bodies, 3).
 
-    `directions` (3 bodies, nv) are the twists at t = 0 due to unit velocities of MuJoCo's coordinates. These twists
-    show by which factors MuJoCo's rows differ from the mechanism's rows. `drift` (3 bodies,) are the accelerations at t
-    = 0 for zero accelerations of the coordinates, which replace the velocity term that equalities of tendons lack (up
-    to 4.0.1). `moved(pose)` is a mujoco.MjData at a pose, after mj_fwdPosition. `moved` is needed only with the flag
-    `diagexact`, for which the diagonal depends on the pose.
+    `directions` (3 bodies, nv) are the twists at t = 0 due to unit velocities of MuJoCo's coordinates. `drift` (3
+    bodies,) are the accelerations at t = 0 for zero accelerations of the coordinates, which replace the velocity term
+    that equalities of tendons lack (up to 4.0.1). `moved(pose)` is a mujoco.MjData at a pose, after mj_fwdPosition.
+    `moved` is needed only with the flag `diagexact`, for which the diagonal depends on the pose.
     """
     begin = np.cumsum([0, *(joint.size for joint in mechanism.joints)])
     rows_of = {joint.name: list(range(at, at + joint.size)) for joint, at in zip(mechanism.joints, begin, strict=False)}

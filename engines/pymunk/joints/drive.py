@@ -1,8 +1,7 @@
 """Prescribed rotations in pymunk: bodies that the ground drives, and motors between two other bodies.
 
 A crank is a body with a drive and a pin to the ground. In pymunk a crank is a kinematic body that turns about the pin.
-A driven body without a pin to the ground has an infinite moment of inertia. No impulse changes its rate, so its angle
-is exact.
+A driven body without a pin to the ground has an infinite moment of inertia.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 - "contact": two shapes with contact and friction, as a user would build them.
 - "pivot": a `PivotJoint`. Before every step our code sets the anchors to the two points of the curves that will be in
-  contact after the drift. Arc lengths begin at t = 0, so the joint corrects the accumulated gap.
+  contact after the drift.
 """
 
 from __future__ import annotations
@@ -50,8 +50,7 @@ class ContactSettings(Valid):
     for polygons of some hundred corners (`tests/engines/test_pymunk.py`).
 
     With the default settings the motion of a contact depends on the unit of length, since collision_slop is 0.1 units
-    (pymunk 7.3.1). The angle of `rolling_ellipse` changes by 4e-3 rad if the unit is a millimetre. With `slop` 0 or
-    `bias` 1 it does not change.
+    (pymunk 7.3.1). The angle of `rolling_ellipse` changes by 4e-3 rad if the unit is a millimetre.
     """
 
     slop: NonNegative = SHIPPED_SLOP

@@ -248,8 +248,7 @@ def _is_wanted(space: pymunk.Space, module: types.ModuleType, name: str) -> bool
 def _name_and_line(path: Path, name: str, stop: _SpaceStepped) -> tuple[str, int | None]:
     """The name of the space that was stepped, and the line of the statement that steps it.
 
-    The name and line are taken from the outermost function on the call stack that has a name for the space. Without
-    such a function, the result is ("", None).
+    The name and line are taken from the outermost function on the call stack that has a name for the space.
     """
     trace: TracebackType | None = stop.__traceback__
     while trace is not None:
