@@ -63,10 +63,7 @@ class Exudyn(ExtraEngine):
     modules: ClassVar[tuple[str, ...]] = ("exudyn",)
     library: ClassVar[tuple[str, str] | None] = ("libGL.so.1", "libgl1")  # for a window that we do not open
     capability: ClassVar[Capability] = Capability(
-        "exudyn",
-        EXUDYN_JOINTS,
-        EXUDYN_FORCES,
-        {Coupling: Lack("our adapter of exudyn builds no coupling")},
+        "exudyn", EXUDYN_JOINTS, EXUDYN_FORCES, {Coupling: Lack("our adapter of exudyn builds no coupling")}
     )
 
     variant: Name

@@ -40,12 +40,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.capability import Capability
-from engines.contract import (
-    ConvergenceOrder,
-    Instant,
-    NotDeclared,
-    Unsupported,
-)
+from engines.contract import ConvergenceOrder, Instant, NotDeclared, Unsupported
 from engines.device import chosen_device
 from engines.mujoco import declared
 from engines.mujoco.methods import TUNED as C_TUNED

@@ -40,8 +40,7 @@ Numbers = Annotated[Floats, NOT_FINITE]  # Unknown values are NaN.
 Complexes = Annotated[Any, COMPLEX]  # Array arguments of functions that are differentiated by a complex step.
 AnyComplexes = Annotated[Complexes, NOT_FINITE]
 Times = Annotated[
-    ArrayLike,
-    Rule(lambda value: np.ndim(value) < 2 and np.all(np.asarray(value) >= 0), "in one row, none below zero"),
+    ArrayLike, Rule(lambda value: np.ndim(value) < 2 and np.all(np.asarray(value) >= 0), "in one row, none below zero")
 ]
 
 

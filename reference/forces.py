@@ -239,11 +239,7 @@ class CoupledForce(OfTerms, ForceFacts):
     ground last.
     """
 
-    unit_exponents: ClassVar[UnitExponents] = {
-        "force": (1, -2),
-        "stiffness": (1, -2),
-        "damping": (1, -1),
-    }
+    unit_exponents: ClassVar[UnitExponents] = {"force": (1, -2), "stiffness": (1, -2), "damping": (1, -1)}
 
     force: float = 0.0
     stiffness: NonNegative = 0.0

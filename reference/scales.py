@@ -43,11 +43,7 @@ def length_scale(bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequen
 
 
 def time_scale(
-    length: float,
-    gravity: Vector,
-    bodies: Sequence[Body],
-    joints: Sequence[Joint],
-    forces: Sequence[ForceElement] = (),
+    length: float, gravity: Vector, bodies: Sequence[Body], joints: Sequence[Joint], forces: Sequence[ForceElement] = ()
 ) -> float:
     """The time of one radian of the mechanism's fastest motion [s], or 1 for a mechanism at rest without forces.
 

@@ -313,10 +313,7 @@ def _odd() -> dict[str, Mechanism]:
         "a skate on a hinged body": ((still,), (hinge, front)),
         "a disc that rolls on a moving body": ((still, Body("right", 1.0, 0.1, (1.0, 0.0, 0.0))), (hinge, rim)),
         "a hinged disc that rolls": ((wheel,), (Roll("rim", None, "left", rolling(Line(), 0.3, 0.0, 0.0)), axle)),
-        "a mass of a milligram": (
-            (Body("left", 1e-6, 1e-9, (0.0, 0.0, 0.0), (0.0, 0.0, 0.5)), right),
-            (hinge, other),
-        ),
+        "a mass of a milligram": ((Body("left", 1e-6, 1e-9, (0.0, 0.0, 0.0), (0.0, 0.0, 0.5)), right), (hinge, other)),
     }
     return {name: Mechanism(*parts, gravity=(0.0, -10.0)) for name, parts in cases.items()}
 

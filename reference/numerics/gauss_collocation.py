@@ -162,10 +162,7 @@ def integrate(
             length *= HALVED
             guess = np.broadcast_to(accelerations(position[None], speed[None]), guess.shape)
             continue
-        steps = [
-            exact * speed + exact**2 * (rule.weights @ rule.matrix @ nodal),
-            exact * (rule.weights @ nodal),
-        ]
+        steps = [exact * speed + exact**2 * (rule.weights @ rule.matrix @ nodal), exact * (rule.weights @ nodal)]
         moved = []
         for part, (old, step) in enumerate(zip((position, speed), steps, strict=True)):
             new = old + (step + compensation[part])

@@ -90,8 +90,7 @@ def test_a_consistent_start_is_not_changed():
 
 
 @pytest.mark.parametrize(
-    ("rates", "named"),
-    [((1.0, 2.0), ("SimpleMotor 1, SimpleMotor 2",)), ((3.0,), ("SimpleMotor 1", "PivotJoint"))],
+    ("rates", "named"), [((1.0, 2.0), ("SimpleMotor 1, SimpleMotor 2",)), ((3.0,), ("SimpleMotor 1", "PivotJoint"))]
 )
 def test_contradictory_motor_rates_are_refused_in_one_line(rates, named):
     space, bars = linkage(A, B, C, D)

@@ -93,11 +93,7 @@ def test_a_name_that_can_not_be_printed_in_a_table_is_no_engines_name(word):
     [
         ("", "broken.py", "nothing at the top level of this file is one"),
         ("ENGINES = ()", "broken:ENGINES", "it is empty"),
-        (
-            "ENGINE = 'pymunk'",
-            "broken:ENGINE",
-            "the type str is no engine: it does not inherit from engines.Engine",
-        ),
+        ("ENGINE = 'pymunk'", "broken:ENGINE", "the type str is no engine: it does not inherit from engines.Engine"),
         ("from engines.lagrange import Lagrange", "broken:Lagrange", "it is a class; give an engine made of it"),
         ("", "broken:ENGINE", "broken has no ENGINE"),
         ("", "absent.py", "absent.py: there is no such file"),

@@ -12,10 +12,7 @@ from engines.lagrange import TRUTH
 from reference.checks import InvalidMechanism
 from reference.scenes.andrews import Andrews
 from reference.scenes.four_bar.linkage import FourBar, Unreachable
-from reference.scenes.four_bar.scenes import (
-    OverdrivenFourBar,
-    Parallelogram,
-)
+from reference.scenes.four_bar.scenes import OverdrivenFourBar, Parallelogram
 from reference.scenes.slider_crank import SliderCrank
 from tests.present import present
 from tests.reference.formulas import closed

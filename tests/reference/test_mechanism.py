@@ -231,11 +231,7 @@ def test_degrees_of_freedom_do_not_depend_on_the_unit_of_length(scale):
         Slot("guide", None, "slider", (scale, 0.0), 0.3, (0.0, 0.0)),
     )
     freedoms = [Mechanism((arm, body), joints[:count]).degrees_of_freedom() for count in (2, 3, 4)]
-    assert freedoms == [
-        (2, 2),
-        (1, 1),
-        (1, 1),
-    ]  # slot and motor are dependent, since the arm lies along x
+    assert freedoms == [(2, 2), (1, 1), (1, 1)]  # slot and motor are dependent, since the arm lies along x
 
 
 def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth():
@@ -337,10 +333,7 @@ def test_every_engine_refuses_a_trajectory_above_the_memory_limit(engine):
 
 
 BODY = Body("b", 2.0, 0.5, (0.0, 0.0, 0.0))
-AT = (
-    0.3,
-    0.4,
-)  # m; the inverse effective mass is 1/2 + 0.25/0.5 = 1 per kilogram
+AT = (0.3, 0.4)  # m; the inverse effective mass is 1/2 + 0.25/0.5 = 1 per kilogram
 
 
 @pytest.mark.parametrize(

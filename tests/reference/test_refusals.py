@@ -144,10 +144,7 @@ REFUSED: dict[str, tuple[Any, str]] = {
         lambda: Rolling.at_angle(Ellipse(0.5, 0.3), Placed(Ring(0.45, (0.2, 0.1)), (1.0, -2.0), 0.7), 0.7),
         "beyond it",
     ),
-    "a ring too narrow to roll about an ellipse": (
-        lambda: Rolling.at_arcs(Ring(0.45), Ellipse(0.5, 0.3)),
-        "beyond it",
-    ),
+    "a ring too narrow to roll about an ellipse": (lambda: Rolling.at_arcs(Ring(0.45), Ellipse(0.5, 0.3)), "beyond it"),
     "an ellipse that fits at the tip only": (
         lambda: Rolling.at_angle(Ellipse(0.5, 0.3), Ring(0.7)).contact(2.0),
         "can't turn to 2.0 rad",

@@ -16,13 +16,7 @@ from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary, Parabola, Traced
 from reference.rolling.roll import Roll
 from reference.scenes.rolling.body import GRAVITY, RollingBody
-from reference.scenes.rolling.scenes import (
-    RollingDisc,
-    RollingDownhill,
-    RollingEllipse,
-    RollingInRing,
-    RollingOnCircle,
-)
+from reference.scenes.rolling.scenes import RollingDisc, RollingDownhill, RollingEllipse, RollingInRing, RollingOnCircle
 from tests.present import present
 
 CASES = {

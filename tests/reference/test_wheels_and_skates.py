@@ -145,10 +145,7 @@ def test_the_jackknife_time_of_a_reversing_trailer_agrees_with_the_closed_form()
     assert driven.jackknifed_at == pytest.approx(-1.5 * math.log(math.tan(0.005)), abs=1e-10)
     assert driven.bends[-1, 0] == pytest.approx(2 * math.atan(math.tan(0.005) * math.exp(20 / 1.5)), abs=1e-10)
     assert car.drive(1.0, 0.0, (0.0, 0.0, 0.0), (0.01,), [20.0]).jackknifed_at is None
-    for bend in (
-        -0.3,
-        0.3,
-    ):  # the first trailer's axle is the second trailer's hitch
+    for bend in (-0.3, 0.3):  # the first trailer's axle is the second trailer's hitch
         pair = CarWithTrailers(1.0, (0.9, 1.1), (0.0, 0.0))
         second = pair.drive(-1.0, 0.0, (0.0, 0.0, 0.0), (0.0, bend), [4.0], limit=1.0)
         assert (driven.jackknifed, second.jackknifed) == (1, 2)

@@ -253,9 +253,7 @@ class Parallelogram(DrivenFourBar):
         heading = np.full_like(theta, math.atan2(self.ground[1], self.ground[0]))
         rate = np.full_like(theta, self.rate)
         return BarAngles(
-            np.stack([theta, heading, theta], axis=-1),
-            np.stack([rate, zero, rate], axis=-1),
-            np.zeros((len(theta), 3)),
+            np.stack([theta, heading, theta], axis=-1), np.stack([rate, zero, rate], axis=-1), np.zeros((len(theta), 3))
         )
 
 
