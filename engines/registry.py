@@ -47,8 +47,7 @@ _variants = registered("crosscheck.engines", ENGINE, method_name)
 _methods = registered("crosscheck.methods", ENGINE, method_name, {method_name(e): e for e in _variants.values})
 
 # The engines that are run in every scene. The list has engines as shipped, tuned by documented settings, and extended
-# by our code. The list also has ideal constraints with integrators of order 1 and 4, and engines of other
-# distributions.
+# by our code.
 VARIANTS: tuple[Engine, ...] = _variants.values
 
 # VARIANTS and further methods, grouped by engine.

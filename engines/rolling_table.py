@@ -22,7 +22,7 @@ from reference.rolling.curves import Circle, Curve, Line, Placed, Ring
 from reference.rolling.kinematics import Rolling
 
 # P'' is interpolated at the Chebyshev points of a cell. P' and P are integrals of the polynomial, since differentiation
-# would amplify rounding errors. A basis of powers is accurate because the coefficients decrease.
+# would amplify rounding errors.
 NODES = 6
 COARSEST = 2 * math.pi / 256
 FINEST = 2 * math.pi / 2**17  # Width of a cell [rad]; a finer table would have more cells than a motion uses.

@@ -170,8 +170,7 @@ class MuJoCo(Engine, Valid):
         if stiffness is self.stiffness and isinstance(stiffness, Hardened) and stiffness.eased:
             with suppress(Unsupported):  # with `eased`, the softening depends on the model
                 softening = self.model(mechanism, dt).softening
-        # impedance[1] is valid for gaps of at least a millimetre. With MuJoCo's defaults, the compliance at zero gap is
-        # about twice as large.
+        # impedance[1] is valid for gaps of at least a millimetre.
         compliance = (1 - stiffness.impedance[1]) / stiffness.impedance[1] * softening
         rows = tuple(joint in soft for joint in mechanism.joints for _ in range(joint.size))
         return Regularisation(gain, damping, compliance, rows, complete=not is_incomplete)

@@ -34,8 +34,7 @@ SHIPPED_ITERATIONS, SHIPPED_ERROR_BIAS = _shipped()
 CONTRACTION = "contraction"
 # CPU time [s] of a step of three bodies, and of an iteration of one joint.
 STEP_COST, ITERATION_COST = 2e-6, 13e-9
-# Iterations of a start-up step with contacts. The convergence factor ignores that contact points act on each other.
-# After five iterations, half of a disc's contact force is missing.
+# Iterations of a start-up step with contacts. After five iterations, half of a disc's contact force is missing.
 CONTACT_ITERATIONS = 1000
 
 

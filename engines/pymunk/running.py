@@ -106,8 +106,7 @@ def record(model: Model, dt: float, samples: int, every: int, raw: bool, startup
     dt /= model.unit
     visitor, before, after = recorder.visitor, recorder.velocities, recorder.states
     stopped: RunWarning | None = None
-    # The list is in reverse order, since `pop` takes the last entry. The first entry restores the iterations of the
-    # model.
+    # The list is in reverse order, since `pop` takes the last entry.
     iterations = [model.space.iterations, *reversed(startup)] if startup else []
 
     def advance(count: int) -> bool:

@@ -27,9 +27,8 @@ Array = NDArray[np.float64]
 Place = Annotated[Array, of_shape("coordinates")]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
 
-# Derivatives of brackets are computed by Cauchy's formula on a circle. The error is about
-# (CIRCLE_RADIUS / distance to a singularity)^CIRCLE_SAMPLES. Derivatives can be nested, since all functions are
-# analytic.
+# Derivatives of brackets are computed by Cauchy's formula on a circle. The error is about (CIRCLE_RADIUS / distance to
+# a singularity)^CIRCLE_SAMPLES.
 CIRCLE_RADIUS = 0.03
 CIRCLE_SAMPLES = 8
 GROWTH_TOLERANCE = 1e-6

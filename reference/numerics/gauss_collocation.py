@@ -48,7 +48,7 @@ GUESS_COEFFICIENTS = 8
 # Maximum number of windows; a motion that needs more approaches a singularity.
 MOST_WINDOWS = 20_000
 # Number of windows after which `motion` changes to the explicit method. Accelerations in double precision allow only
-# short windows for a fast oscillation. The attempt with so many windows costs a tenth of a second.
+# short windows for a fast oscillation.
 FEW_WINDOWS = 200
 
 

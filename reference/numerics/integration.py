@@ -28,7 +28,7 @@ COARSER = 10.0
 # Maximum number of steps; a motion that needs more approaches a singularity.
 MAX_STEPS = 20_000
 # The first step as a fraction of the time in which the state would change by its value plus its unit. The value is
-# small for any motion, since a step may grow tenfold. SciPy's first step would depend on the unit of time.
+# small for any motion, since a step may grow tenfold.
 FIRST_STEP = 1e-3
 # Number of steps after which the integration checks whether it can end. The integration stops if even steps LENGTHENED
 # times as long would exceed the maximum number of steps.

@@ -52,8 +52,7 @@ class Contact:
         return (self.ground_curvature + self.body_curvature) / largest
 
 
-# Smallest allowed conformality of a contact. The error of the contact is proportional to the inverse of the
-# conformality. At this value about seven of the sixteen digits of a double are accurate.
+# Smallest allowed conformality of a contact. At this value about seven of the sixteen digits of a double are accurate.
 NEAR_CONFORMAL = 1e-9
 # Number of points of a closed curve at which conformality and overlap are checked.
 SCAN = 721

@@ -98,7 +98,7 @@ def test_the_solver_converges_with_the_armature_of_a_drive() -> None:
         (FREE_COORDINATES, FreeSliderCrank().mechanism(), (3, 9, 8, 10)),
         (EXTENDED, far_drive(), (4, 4, 3, 4)),  # A clock drives the sum of two coordinates.
         # A contact has four rows for the edges of a pyramid, or a normal row and two friction rows. One friction row is
-        # zero, since it is normal to the plane of motion. EXTENDED has two user rows.
+        # zero, since it is normal to the plane of motion.
         *((engine, RollingDisc().mechanism(), (1, 3, 2, n)) for engine, n in ((DEFAULT, 4), (TUNED, 3), (EXTENDED, 2))),
         (TUNED, SlottedLever().mechanism(), (3, 4, 4, 6)),  # A body is split, and a weld joins its parts.
         (SLOTS[0], SlottedLever().mechanism(), (2, 2, 2, 1)),

@@ -21,8 +21,7 @@ from reference.joints import Body, Joint, Vector
 Array = NDArray[np.float64]
 PLANAR = 1e-9  # Largest rounding of a component, relative to a unit vector or an inertia.
 # Largest tilt [rad] of an axis that counts as normal to the plane. Rounding to six digits tilts an axis by 2e-6. An
-# angle of 1.5708 in place of a right angle tilts it by 4e-6. Tilts add up along chains. An angle of 1.57 tilts it by
-# 8e-4 and is refused.
+# angle of 1.57 tilts it by 8e-4 and is refused.
 MAX_TILT = 1e-4
 MAX_ROUNDED_TILT = 1e-2  # largest tilt [rad] for which a message mentions rounding in the file
 

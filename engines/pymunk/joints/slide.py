@@ -165,8 +165,7 @@ class AimedGroove:
         self._pointer, self._body = self.constraint._constraint, body._body
         self._angle = joint.angle
         # The body cannot reach the ends [m] of the groove in a step. The length is a power of two, so that similar
-        # mechanisms of nearly equal size have the same rounding. Sizes that differ by a power of two also have the same
-        # rounding.
+        # mechanisms of nearly equal size have the same rounding.
         half = 2.0 ** (1 + round(log2(length))) + abs(along)
         self._back, self._front = along - half, along + half
 

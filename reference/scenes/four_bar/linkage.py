@@ -94,9 +94,9 @@ def _cross(first: Any, second: Any) -> Any:
     return (np.conj(first) * second).imag
 
 
-# The chapter's pseudocode, which integrates the printed rates, is a method under test and no reference. The method does
-# not correct the closure of the loop, so errors of the angles accumulate. With the default tolerance of common packages
-# (rtol 1e-3) the coupler's angle has an error of 0.02 rad after 1 and of 1 rad after 100 revolutions.
+# The chapter's pseudocode, which integrates the printed rates, is a method under test and no reference. With the
+# default tolerance of common packages (rtol 1e-3) the coupler's angle has an error of 0.02 rad after 1 and of 1 rad
+# after 100 revolutions.
 
 ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
 # The stages' nodes, as fractions of the step, for methods with a fixed step.
