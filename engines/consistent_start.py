@@ -150,7 +150,6 @@ def _per_length(own: Mechanism, slip: Array) -> Array:
 
 
 def _contradiction(own: Mechanism, missed: Array) -> str:
-    """The message for rows that no velocities satisfy together; `missed` (rows,) is the remaining slip [m/s, rad/s]."""
     sizes = np.abs(_per_length(own, missed))
     joints = [joint.name for joint in own.joints for _ in range(joint.size)]
     driven = [name for name, rate in zip(joints, own.rate, strict=True) if rate]

@@ -162,7 +162,6 @@ class DrakePlant:
         self.size = Size(len(self.mechanism.bodies), tree.coordinates, rows, rows + len(tree.loops))
 
     def _simulate(self) -> None:
-        """Make the diagram and its simulator; raises Unsupported if Drake refuses a constraint."""
         drake, builder = self.drake, self.drake.DiagramBuilder()
         if self.scheme == "cenic":  # Drake 1.51 requires a scene graph
             drake.AddMultibodyPlantSceneGraph(builder, self.plant)
@@ -194,7 +193,6 @@ class DrakePlant:
         return self.plant.AddFrame(self.drake.FixedOffsetFrame(name, body, offset))
 
     def _add(self, link: Link) -> None:
-        """Add a body, whose frame is at its centre of mass, and the joint that connects it to its parent."""
         drake, name, described = self.drake, f"body {link.body}", self.mechanism.bodies[link.body]
         body = self.bodies[link.body] = self._add_body(name, described.mass, described.inertia)
         parent = self._frame(self.bodies[link.parent], described.pose if link.kind == "free" else link.arm)
@@ -235,7 +233,6 @@ class DrakePlant:
         raise Unsupported(f"joint {element.name!r}: its angle is not that of a single revolute joint of drake's tree")
 
     def _constrain(self, joint: Any) -> None:
-        """Add the constraint of a joint that closes a loop."""
         if isinstance(joint, Gear):
             (second, sign), (first, other) = (self._revolute(joint, None, name) for name in (joint.second, joint.first))
             self.plant.AddCouplerConstraint(second, first, joint.ratio * other / sign)
@@ -314,7 +311,6 @@ class DrakePlant:
 
 
 def _force_elements(model: DrakePlant) -> Any:
-    """A system of Drake that computes the force elements from the plant's state."""
     drake, plant = model.drake, model.plant
 
     class ForceElements(drake.LeafSystem):

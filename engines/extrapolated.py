@@ -248,7 +248,6 @@ class ExtrapolatedRun(OneShot):
         return min((float(t[np.argmax(flag)]) for flag in flags), default=None)
 
     def _estimate(self, poses: Array, pose: Array, steps: int) -> Array:
-        """Estimated errors (times, bodies, 3) of the extrapolation `pose` of `poses` (levels, times, bodies, 3)."""
         # In its first step the coarsest run may have an unusually large error; for example, it closes a gap one step
         # late. If the coarsest run alone is wrong, the last difference is the whole error of the extrapolation.
         least = np.full(poses.shape[1], LEAST)

@@ -87,7 +87,6 @@ def _named(module: ModuleType, name: str) -> tuple[Any, ...]:
 
 
 def _unhashable(value: Any) -> str:
-    """A clause on why a value can't be a key of stored results; empty if it can."""
     try:
         hash(value)
     except TypeError:

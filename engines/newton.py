@@ -155,7 +155,6 @@ class NewtonModel:
         return builder
 
     def _add_joints(self, builder: Any) -> None:
-        """Add an articulation for each tree of joints, and then the joints that close loops."""
         joints = [joint for joint in self.mechanism.joints if isinstance(joint, Pin | Weld)]
         trees: list[list[tuple[str, str | None, Pin | Weld | None]]] = []
         of_body: dict[str, list[tuple[str, str | None, Pin | Weld | None]]] = {}
@@ -245,7 +244,6 @@ class NewtonModel:
         return Recorded(pose, twist, acceleration, stepping, inertias, gravity)
 
     def _state(self, state: Any) -> tuple[Array, Array]:
-        """Poses (bodies, 3) with angles within one turn, and twists (bodies, 3)."""
         place, twist = state.body_q.numpy().astype(float), state.body_qd.numpy().astype(float)
         angle = 2 * np.arctan2(place[:, 5], place[:, 6])
         return np.column_stack([place[:, :2], angle]), twist[:, [0, 1, 5]]

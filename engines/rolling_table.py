@@ -96,7 +96,6 @@ def _exactly(rolling: Rolling, theta: float) -> Place:
 
 
 def _contacts(rolling: Rolling, theta: NDArray[np.float64]) -> tuple[NDArray[np.complex128], ...]:
-    """P, P' and P'' at the rotations theta, by `reference.rolling`."""
     contact = rolling.contact(theta)
     point, arm = (vector[..., 0] + 1j * vector[..., 1] for vector in (contact.point, contact.arm))
     normal = np.sin(contact.tangent_angle) - 1j * np.cos(contact.tangent_angle)
@@ -237,7 +236,6 @@ class Table:
         return np.array([self._cells[index] or none for index in range(first, first + count)])
 
     def _cell(self, theta: float) -> tuple[complex, ...] | None:
-        """The cell of a rotation, or None if the exact contact is needed."""
         index = math.floor(theta * self._per_radian)
         if index not in self._cells and not self.exact_only:
             self._compute_block(index)

@@ -53,7 +53,7 @@ class ForceFacts(Element):
 
 @dataclass(frozen=True)
 class _ForceOfTwo(BetweenTwo, ForceFacts):
-    """Base of force elements between two bodies."""
+    pass
 
 
 class _Dissipative(_ForceOfTwo):
@@ -304,7 +304,6 @@ def _inverse_inertia(element: BetweenTwo, bodies: Bodies) -> float:
 
 
 def _couple(torque: AnyArray) -> AnyArray:
-    """The generalised force (..., 6) of a torque (...) [N m] on the second body and its opposite on the first."""
     out = np.zeros((*torque.shape, 6), dtype=torque.dtype)
     out[..., 2], out[..., 5] = -torque, torque
     return out

@@ -63,7 +63,7 @@ def bodies_of(names: Sequence[str], masses: Any, inertias: Any, pose: Any, twist
 
 @dataclass(frozen=True)
 class _JointOfTwo(BetweenTwo, JointElement):
-    """Base of joints between two bodies."""
+    pass
 
 
 @dataclass(frozen=True)

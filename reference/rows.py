@@ -105,7 +105,6 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
 
 
 def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
-    """The solution with the smallest norm in units of `size`, by removal of the null space of rows^T."""
     _, singular, right = np.linalg.svd(matrix, full_matrices=True)
     count = matrix.shape[-1]
     padded = np.zeros((*singular.shape[:-1], count))

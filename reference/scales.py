@@ -79,7 +79,6 @@ def _guide(force: ForceElement, joints: Sequence[Joint], bodies: Mapping[str, Bo
 
 
 def _span(places: tuple[Place, ...], bodies: Mapping[str, Body]) -> float:
-    """The distance of two points at t = 0 [m], or 0 for fewer points."""
     return math.dist(*(_to_world(*place, bodies) for place in places)) if len(places) == 2 else 0.0
 
 

@@ -87,7 +87,6 @@ class Scene(Valid, ABC):
                 validate(self._owner(), name, value, annotation)
 
     def __getstate__(self) -> dict[str, Any]:
-        """The state for pickling: the fields, and the name if it was changed, without cached results."""
         names = [field.name for field in fields(self)]  # type: ignore[arg-type]
         return {name: getattr(self, name) for name in (*names, *(["name"] if "name" in vars(self) else []))}
 
@@ -112,7 +111,7 @@ class Scene(Valid, ABC):
 
     @abstractmethod
     def _motion(self, times: Floats) -> Trajectory:
-        """The reference motion at one or more checked times (times,) [s]."""
+        pass
 
     def _refuse_not_finite(self, motion: Trajectory) -> None:
         """Raise OverflowError for numbers that are not finite; unknown reactions are NaN.

@@ -50,7 +50,6 @@ class Isometry:
         return float(new[0]), float(new[1])
 
     def _inside(self, point: Vector) -> Vector:
-        """A point in a body's frame, which only `mirrored` changes."""
         return (-point[0], point[1]) if self.mirrored else point
 
     def _angle(self, angle: float) -> float:

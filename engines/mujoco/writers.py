@@ -109,7 +109,6 @@ def urdf(mechanism: Mechanism) -> str:
 
 
 def _add_link(root: xml.Element, mechanism: Mechanism, link: Link, anchors: Mapping[int, Vector]) -> None:
-    """Add a body and its joint; the body's frame is at the joint and parallel to the world at t = 0."""
     body = mechanism.bodies[link.body]
     if link.kind == "free" or (link.kind == "slot" and link.turns):
         raise Unsupported(f"body {body.name!r} has more freedom than a hinge or a slide, which URDF cannot represent")
@@ -270,7 +269,6 @@ def add_visuals(root: xml.Element, mechanism: Mechanism) -> None:
 
 
 def _points(mechanism: Mechanism, name: str | None) -> list[Vector]:
-    """The points of the joints of a body or the ground, and the centre of mass of a body with fewer than two points."""
     points = [point for joint in mechanism.joints for owner, point in joint.fixed_points if owner == name]
     if name is not None and len(set(points)) < 2:
         points.append((0.0, 0.0))

@@ -226,7 +226,6 @@ def _system(mechanism: Mechanism, pose: Array) -> _System:
 
 
 def _block_sizes(joint: Joint) -> tuple[int, ...]:
-    """The numbers of rows of a joint's pymunk constraints; a weld is a pivot and a gear."""
     return (2, 1) if isinstance(joint, Weld) else (joint.size,)
 
 

@@ -116,7 +116,7 @@ class Model:
 
 
 def _no_drift(body: pymunk.Body, dt: float) -> None:
-    """The position function of a step without drift."""
+    pass
 
 
 def build_model(mechanism: Mechanism, settings: Settings) -> Model:

@@ -138,7 +138,6 @@ def growth(rows: Rows, place: Place) -> tuple[int, ...]:
 
 
 def _extended_basis(basis: Array, vectors: list[Array]) -> Array:
-    """An orthonormal basis (coordinates, dimension) of the space that a basis and more vectors span."""
     for vector in vectors:
         rest = vector - basis @ (basis.T @ vector)
         rest -= basis @ (basis.T @ rest)

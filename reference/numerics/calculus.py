@@ -94,7 +94,6 @@ class Antiderivative:
         self._starts = np.concatenate([self._starts, self._starts[-1] + np.cumsum(panels.sum(axis=1))])
 
     def __call__(self, t: ArrayLike) -> NDArray[Any]:
-        """The integral from 0 to times t >= 0 (any shape)."""
         times = np.asarray(t, dtype=float)
         flat = times.ravel()
         if flat.size and flat.max() > self._edges[-1]:

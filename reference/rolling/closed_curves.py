@@ -86,7 +86,6 @@ class Ellipse(Curve):
 
     @cached_readonly
     def _half_turn(self) -> tuple[Array, Array, Array]:
-        """A table of parameters, arcs [m] and speeds [m] from -pi/2 to pi/2 for first guesses."""
         u = np.linspace(-math.pi / 2, math.pi / 2, GUESSES)
         return u, self.arc_of(u), self.speed_of(u)
 

@@ -244,8 +244,6 @@ class Side(ByArc):
 
 @dataclass(frozen=True)
 class _Round(ByArc):
-    """Base of disc and hole: a circle of `radius` [m] about `centre` [m]."""
-
     radius: Positive
     centre: Vector = (0.0, 0.0)
 

@@ -145,7 +145,6 @@ def _add_blades(builder: ModelBuilder, skates: Sequence[Skate]) -> None:
 
 
 def _raise_ground(compiled: Any, _address: Sequence[int]) -> Hooks:
-    """Raise the ground until the contact forces are equal to the weight."""
     weight = float(compiled.body_mass.sum()) * STANDARD_GRAVITY
     ground, data = compiled.geom("ice").id, mujoco.MjData(compiled)
 

@@ -174,7 +174,6 @@ class OwnMuJoCo:
         return declared(self.planar, self.mechanism, columns, self._drift(), moved)
 
     def _drift(self) -> Array:
-        """The bodies' accelerations (3 bodies,) at t = 0 for zero accelerations of MuJoCo's coordinates."""
         data = self._consistent_start(self.planar.model)
         mujoco.mj_forward(self.planar.model, data)
         data.qacc[:] = 0.0

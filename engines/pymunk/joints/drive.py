@@ -49,7 +49,6 @@ def _joints_to_ground(mechanism: Mechanism, kind: type[Any]) -> dict[str, Any]:
 
 
 def _rate(joint: Drive) -> float:
-    """The angular velocity [rad/s] of the body that a drive to the ground turns."""
     return joint.turning_rate if joint.first is None else -joint.turning_rate
 
 

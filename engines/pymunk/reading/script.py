@@ -81,7 +81,6 @@ def run_script(path: Path, file: str, name: str) -> ScriptSpace:
 
 
 def _run_script(path: Path, file: str, name: str, half: float | None = None) -> ScriptSpace:
-    """Run a script once. With `half` [s], the script continues after a first step of this length."""
     module = types.ModuleType(SCRIPT_MODULE)
     module.__file__ = str(path)
     try:

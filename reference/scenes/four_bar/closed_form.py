@@ -138,7 +138,6 @@ def closed_form(
 
 
 def _triangles(c: Constants, theta: Array) -> Triangles:
-    """The triangles at crank angles (n,). Raises OutOfReach if B C D can't close."""
     # One tangent gives sin^2 and cos^2 of theta'/2, and the product of sine and cosine.
     half, turn_x, turn_y = np.tan(0.5 * theta), math.cos(c.heading / 2), math.sin(c.heading / 2)
     sine, cosine = half * turn_x - turn_y, half * turn_y + turn_x  # both over cos(theta/2)
@@ -166,7 +165,6 @@ def _triangles(c: Constants, theta: Array) -> Triangles:
 
 
 def _angles(c: Constants, triangles: Triangles, theta: Array, branch: Array) -> tuple[Array, Array]:
-    """beta and phi [rad], continuous in theta."""
     _, m, n, h, p, r, area = triangles
     # v is B - D, scaled and rotated. The angle of v is measured from the longer of D -> A and A -> B and is below a
     # right angle.

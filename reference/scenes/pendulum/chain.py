@@ -165,7 +165,6 @@ class Chain(Valid):
         return residual
 
     def _checked(self, *arguments: ArrayLike) -> list[Array]:
-        """Angles, rates and accelerations as arrays. Raises InvalidMechanism unless all have the shape (..., links)."""
         states = [np.asarray(argument, dtype=float) for argument in arguments]
         shapes = [state.shape for state in states]
         if any(shape != shapes[0] or shape[-1:] != (self.links,) for shape in shapes):

@@ -74,7 +74,6 @@ class RollingBody(Valid):
 
     @cached_property
     def _beyond(self) -> list[float]:
-        """The rotation [rad] farthest beyond the limits in a stage of the integrator, or an empty list."""
         return []
 
     @contextmanager

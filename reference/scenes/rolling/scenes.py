@@ -248,7 +248,6 @@ class DiscInHole(RollingScene):
         return math.inf
 
     def _motion(self, times: Array) -> Trajectory:
-        """The motion is in closed form, since an integrator would amplify rounding."""
         rolling = self.motion_law.rolling
         theta = rolling.theta + self.start_rate * times
         contact = rolling.contact(theta)

@@ -57,7 +57,6 @@ class Tow(Valid):
 
     @cached_property
     def _start(self) -> tuple[float, float, float]:
-        """sin(psi), cos(psi) and -L psi' at the start."""
         sine = 0.0 if abs(self.angle) == math.pi else math.sin(self.angle)
         return sine, math.cos(self.angle), sine + self.length * self.curvature
 
@@ -251,8 +250,6 @@ class CarWithTrailers(Valid):
         return Convoy(times, np.stack(poses, axis=1), speeds, error, when, which)
 
     def _jackknife(self, motion: Integrated | None, first: Array, limit: float) -> tuple[float | None, int | None]:
-        """The first time at which a joint angle exceeds the limit, and the number of the trailer, from 1."""
-
         def spare(states: Array) -> Array:
             bends = np.diff(states[..., 3:], axis=-1)
             return np.concatenate([limit - bends, limit + bends], axis=-1)

@@ -121,7 +121,6 @@ class CarAndTrailer(Scene):
         return Antiderivative(lambda r: np.sqrt(self.apparent_mass(sign * r) / first), shortest)
 
     def _way(self, times: Array) -> Array:
-        """The rear axle's distance s (times,) [m]; backwards s is negative."""
         sign, first = math.copysign(1.0, self.speed), float(self.apparent_mass(0.0))
         goal = abs(self.speed) * times
 
