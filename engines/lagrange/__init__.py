@@ -6,10 +6,24 @@ scenes' closed forms. The engine shows the integration error of ideal constraint
 Baumgarte's stabilisation (1972), and with a projection onto the joints after each step.
 
 With the extra `fast`, numba compiles the steps; otherwise numpy computes them. Compiled steps and numpy give the same
-results up to rounding.
+results up to rounding. `run_batch` steps many mechanisms in one compiled loop.
 """
 
+from engines.lagrange.batch import Batch, run_batch
 from engines.lagrange.engine import METHODS, VARIANTS, Integrator, Lagrange, Stabilisation
 from engines.lagrange.judge import JUDGE_CLAIM, TRUTH, Judge
+from engines.lagrange.sweep import Sweep
 
-__all__ = ["JUDGE_CLAIM", "METHODS", "TRUTH", "VARIANTS", "Integrator", "Judge", "Lagrange", "Stabilisation"]
+__all__ = [
+    "JUDGE_CLAIM",
+    "METHODS",
+    "TRUTH",
+    "VARIANTS",
+    "Batch",
+    "Integrator",
+    "Judge",
+    "Lagrange",
+    "Stabilisation",
+    "Sweep",
+    "run_batch",
+]

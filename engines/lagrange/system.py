@@ -46,6 +46,7 @@ from reference.rolling.roll import Roll
 from reference.rows import rank
 
 Integers = NDArray[np.int64]
+Key = tuple[str, int, str]  # a number of a system: the name of a table, the number of a record, the name of its field
 Numbers = Mapping[str | None, int]  # Numbers of bodies by name; the ground has the key None.
 Fields = dict[str, str]  # Attributes of a joint or force by field of its record.
 

@@ -1,0 +1,1 @@
+"""Machine code that steps several mechanisms in each vector register, for `engines.lagrange.batch`."""
