@@ -11,8 +11,8 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: report test publish slow check bench mutants search lower clean
 
-report: .venv/installed          ## run the whole grid, and write pages and charts; all below ./crosscheck-results
-	$(BIN)/crosscheck run --full
+report: .venv/installed          ## run all cells that pages print, and write pages and charts; all below ./crosscheck-results
+	$(BIN)/crosscheck run --pages
 	$(BIN)/crosscheck report
 
 test: .venv/installed            ## the tests without those marked slow, then the crosscheck grid; red if either is

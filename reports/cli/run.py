@@ -50,6 +50,7 @@ def run(
     variant: VariantName = None,
     settings: Settings = None,
     full: Annotated[bool, typer.Option("--full/--quick", help="Fine steps and stability maps too.")] = False,
+    pages: Annotated[bool, typer.Option("--pages", help="Like --full, without rows that no page prints.")] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
     every: Every = None,
     step: Annotated[list[float] | None, typer.Option(help="Only this step [s]; must divide the sampling.")] = None,
@@ -65,7 +66,8 @@ def run(
     choose_device(device)
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
-    chosen = select(scene or (), engine, variant, settings or (), full, every or (), step or ())
+    names, own, printed = scene or (), settings or (), pages and not full
+    chosen = select(names, engine, variant, own, full or pages, every or (), step or (), printed)
     items = chosen.items
     with telling(140, as_json, as_markdown) as console:
         with cluster.connect_cluster(scheduler) as crew, opened(results / STORE) as store:
@@ -98,13 +100,15 @@ def select(
     full: bool = False,
     every: Sequence[int] = (),
     steps: Sequence[float] = (),
+    printed: bool = False,
 ) -> Selected:
     """What `crosscheck run` runs with these options. A run with selected steps [s], or with selected numbers `every` of
-    steps between samples, has no tasks, and neither has a quick run of named scenes. Raises BadInput."""
+    steps between samples, has no tasks, and neither has a quick run of named scenes. printed: see `choose_cells`.
+    Raises BadInput."""
     choice = choose(scenes, engine, variant, settings)
     known, given = choice.known, (choice.scenes, choice.engines, choice.known.pages, full)
     alone, is_named, at_steps = bool(scenes) and not full, engine is not None, bool(every or steps)
-    cells = choose_cells(*given, every, steps, named=is_named, alone=alone)
+    cells = choose_cells(*given, every, steps, named=is_named, alone=alone, printed=printed)
     if not (items := (*cells, *(() if at_steps or alone else choose_tasks(*given)))):
         compared = (method for scene in choice.scenes for method in grid_engines(scene, known.engines, known.pages))
         methods = ", ".join(dict.fromkeys(map(method_name, compared)))

@@ -100,12 +100,14 @@ def choose_cells(
     steps: Sequence[float] = (),
     named: bool = False,
     alone: bool = False,
+    printed: bool = False,
 ) -> tuple[Cell, ...]:
     """The cells of the grid of these scenes, and of the experiments on their pages. Raises BadInput for invalid steps.
 
     full: whether all steps are run, also the steps that users choose. A quick run leaves out long cells. every, steps:
     these steps replace the grid. named: a quick run includes the shortest cell of each method even if it is long.
-    alone: a quick run leaves out experiments in other scenes.
+    alone: a quick run leaves out experiments in other scenes. printed: cells of engines outside the grid are left out
+    unless a page lists them, since no page or chart shows their rows.
     """
     if every or steps:
         chosen: dict[Cell, None] = {}
@@ -119,7 +121,7 @@ def choose_cells(
         compared = grid_engines(scene, engines, pages)
         cells += sweep_cells((scene,), compared, FULL if full else QUICK)
         cells += usual_cells((scene,), compared) if full else ()
-        cells += beside_cells((scene,), _beside(engines), named=named)
+        cells += () if printed else beside_cells((scene,), _beside(engines), named=named)
     cells += [
         cell
         for page in pages

@@ -146,7 +146,9 @@ def test_unknown_kinds_and_unknown_fields_are_refused():
 SEED = 1
 # Sizes of faults in Box2D, which has single precision; the tolerance between two descriptions is 1e4 roundings.
 SINGLE: dict[str, float] = dict.fromkeys(RELATIONS, 1e-2) | {"in other masses": 1e-1}
-PARTS = 6  # number of groups of faults; a test that is not slow has one group for each adapter
+PARTS = (
+    12  # number of groups of faults; a test that is not slow has one group for each adapter, since a fault takes 5 s
+)
 ADAPTERS = [name for name in CONTROL_ENGINES if name != "mjx"]
 
 

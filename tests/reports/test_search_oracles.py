@@ -203,7 +203,10 @@ def _softer(model: MuJoCoModel) -> None:
     [
         (TUNED, 163507254, 8, 2, "instant", _heavier, "acceleration"),
         (DEFAULT, 4242, 2, 0, "relations", _pulled_by_place, "mirrored"),
-        (replace(EXTENDED, estimates=False), 1199539626, 75, 2, "motions", _softer, "motion"),
+        pytest.param(
+            *(replace(EXTENDED, estimates=False), 1199539626, 75, 2, "motions", _softer, "motion"),
+            marks=pytest.mark.slow,  # it takes 20 s
+        ),
     ],
     ids=["inertia", "gravity depends on position", "softer row"],
 )
@@ -265,7 +268,7 @@ def test_a_constant_declared_compliance_skips_the_check_and_one_that_falls_with_
     assert any(soft)
     assert any(result.errors for result, loop in zip(tuned, soft, strict=True) if loop)
     assert not any("give way" in reason for result in tuned for reason in result.skipped)
-    assert faults(Altered(TUNED, PlantedFault("inertia", 1e-4)), ("pin",), 8, "motions")
+    assert faults(Altered(TUNED, PlantedFault("inertia", 1e-4)), ("pin",), 3, "motions")
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from engines import Unsupported
+from engines.registry import OTHERS, VARIANTS
 from reference.scenes.catalogue import SCENES
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.cli.selection import QUICK_CELL, choose_cells, choose_engines, choose_tasks, known_engines
 from reports.gate.prediction import all_tasks
 from reports.model import measure as measuring
 from reports.model.catalogue import PAGES
-from reports.model.cells import Cell
+from reports.model.cells import QUICK, Cell
 from reports.model.outcomes import Outcome
 from reports.model.page import Failure, Material, Page
 from reports.model.tasks import Answer, Motion, Task, answered, trajectory_of
@@ -115,6 +116,17 @@ def test_a_full_run_of_all_scenes_has_every_task_of_every_page():
     every = {task for page in PAGES for task in all_tasks(page) if task.engine is None or not task.engine.missing}
     assert set(choose_tasks(SCENES, choose_engines(None, None, known_engines(PAGES)), PAGES, full=True)) == every
     assert not any(isinstance(cell, Task) for cell in choose_cells(SCENES[:1], (), PAGES, full=True))
+
+
+def test_a_run_for_pages_leaves_out_the_cells_of_extras_that_no_page_lists():
+    shown, other = (Cell(scene, OTHERS[0], QUICK[-1], "beside") for scene in SCENES[:2])
+    page = Page("one", "One", "One row.", SCENES[:2], VARIANTS[:1], cells=(shown,))
+    full, printed = (
+        choose_cells(SCENES[:2], (VARIANTS[0], OTHERS[0]), (page,), full=True, printed=printed)
+        for printed in (False, True)
+    )
+    assert {shown, other} <= {*full}
+    assert {*full} - {*printed} == {cell for cell in full if cell.engine == OTHERS[0]} - {shown}
 
 
 @cache
