@@ -44,7 +44,7 @@ class Shipped(_Spring):
     """MuJoCo's defaults: the time constant is 0.02 s for all steps, and the impedance grows with the gap.
 
     The impedance is 0.9 at a gap of zero and 0.95 for gaps of at least a millimetre. R decreases from 0.11 to 0.053 of
-    the inverse inertia (checked in `tests/engines/test_mujoco_upstream.py`).
+    the inverse inertia (checked in `tests/engines/test_mujoco_rows.py`).
     """
 
     impedance: ClassVar[tuple[float, float, float, float, float]] = (0.9, 0.95, 0.001, 0.5, 2.0)
@@ -60,7 +60,7 @@ class TiedToStep(_Spring):
     The gap R f / k is proportional to the square of the step. MuJoCo increases a shorter time constant to two steps,
     unless the flag `refsafe` is disabled (mjDSBL_REFSAFE in mjtype.h). The integrator "discrete" keeps short time
     constants of equalities, and increases those of contacts to about one step (4.0.1, checked in
-    `tests/engines/test_mujoco_upstream.py`). `time_constant` is valid for all integrators except "discrete".
+    `tests/engines/test_mujoco_rows.py`). `time_constant` is valid for all integrators except "discrete".
     """
 
     steps: Positive = 5.0

@@ -22,6 +22,7 @@ limit.
 
 from __future__ import annotations
 
+from itertools import chain
 from math import ceil, log
 from typing import Annotated, Any, NamedTuple
 
@@ -33,7 +34,7 @@ from scipy.sparse.linalg import splu
 from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.remembered import by_identity
 from reference.checks import Count, Numbers, Positive, validated
-from reference.joints import Drive, Joint, Roll, Skate, Weld
+from reference.joints import Drive, Roll, Skate, Weld
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE, ranks
 from reference.validators import Rule
@@ -215,7 +216,8 @@ def _system(mechanism: Mechanism, pose: Array) -> _System:
     rows = mechanism.rows(pose)
     matrix = (rows * weights.reshape(-1)) @ np.swapaxes(rows, -1, -2)
     indices, starts, row = [], [], 0
-    for size in (size for joint in mechanism.joints for size in _block_sizes(joint)):
+    # The blocks are the constraints of pymunk; a weld is a pivot and a gear.
+    for size in chain(*((2, 1) if isinstance(joint, Weld) else (joint.size,) for joint in mechanism.joints)):
         block = list(range(row, row + size))
         row += size
         if np.any(matrix[..., block, block] > 0):
@@ -223,10 +225,6 @@ def _system(mechanism: Mechanism, pose: Array) -> _System:
             indices += block
     jacobian = np.where(weights.reshape(-1) > 0, rows, 0.0)[..., indices, :]
     return _System(matrix[..., np.array(indices, dtype=int)[:, None], indices], starts, jacobian, indices)
-
-
-def _block_sizes(joint: Joint) -> tuple[int, ...]:
-    return (2, 1) if isinstance(joint, Weld) else (joint.size,)
 
 
 def _smallest_eigenvalue(matrix: Array, lower: Array) -> float:

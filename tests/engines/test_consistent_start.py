@@ -23,7 +23,7 @@ from reference.checks import InvalidMechanism
 from reports.check.checked import SweepPlan, check
 from reports.check.judging import refuse_disagreement
 from tests import ROOT
-from tests.independent_spaces import Equations
+from tests.independent import Equations
 
 STEPPED = 1e-6  # See ACCELERATION_ERROR in tests/engines/test_reading_pymunk.py.
 

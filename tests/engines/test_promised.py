@@ -19,7 +19,7 @@ from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES, scene
 from reports.model.cells import SLOW_TO_BUILD
 from tests.mechanisms import ALL, ALONE, DAMPED, GRAVITY
-from tests.reference.test_units import in_other_units
+from tests.reference.test_scenes import in_other_units
 
 QUICKLY = tuple(engine for engine in registry.OTHERS if engine.build_time < SLOW_TO_BUILD)
 ENGINES = (*registry.ENGINES, *QUICKLY)

@@ -92,12 +92,7 @@ def test_declared_orders_and_enforcement_of_all_methods(golden):
 def test_properties_of_a_motion_follow_from_joints_loads_and_start():
     motions = [FREE, MECHANISMS["moving"], DRIVEN, SPINNING]
     assert [starts_at_rest(motion) for motion in motions] == [True, False, False, False]
-    assert [is_prescribed(mechanism_) for mechanism_ in (FREE, DRIVEN, SKATE, MECHANISMS["gears"])] == [
-        False,
-        True,
-        False,
-        True,
-    ]
+    assert [is_prescribed(one) for one in (FREE, DRIVEN, SKATE, MECHANISMS["gears"])] == [False, True, False, True]
     # Two skates leave a body with one degree of freedom of velocity, which a drive removes. Poses are not prescribed.
     blades = (Skate("right", None, "body", (1.0, 0.0), 0.0), Skate("up", None, "body", (0.0, 1.0), math.pi / 2))
     body = Body("body", 1.0, 0.5, (0.0, 0.0, 0.0), (2.0, -2.0, 2.0))
@@ -106,11 +101,7 @@ def test_properties_of_a_motion_follow_from_joints_loads_and_start():
     assert not is_prescribed(driven)
     lagrange = Lagrange("rk4", "projection")
     assert lagrange.order(driven) == lagrange.order(SKATE) != lagrange.order(DRIVEN)
-    assert [turns_steadily(mechanism_) for mechanism_ in (SPINNING, MECHANISMS["hanging"], SKATE)] == [
-        True,
-        False,
-        False,
-    ]
+    assert [turns_steadily(one) for one in (SPINNING, MECHANISMS["hanging"], SKATE)] == [True, False, False]
     assert not turns_steadily(replace(SPINNING, gravity=(0.0, -9.81)))
     assert not turns_steadily(replace(SPINNING, forces=(Torque("brake", None, "disc", -1.0),)))
     arm = Body("arm", 1.0, 0.5, (1.0, 0.0, 0.0), (0.0, 2.0, 0.0))

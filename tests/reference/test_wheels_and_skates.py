@@ -55,10 +55,8 @@ def test_a_skate_never_moves_sideways_in_a_manoeuvre():
 
 
 def test_the_commutator_displacement_tends_to_the_product_of_turn_and_slide_sideways():
-    assert (
-        np.abs(stops((0.0, 0.0, 0.0), commutator(0.6, 0.5))[-1] - [*commutator_displacement(0.6, 0.5), 0.0]).max()
-        < 1e-15
-    )
+    displaced = stops((0.0, 0.0, 0.0), commutator(0.6, 0.5))[-1]
+    assert np.abs(displaced - [*commutator_displacement(0.6, 0.5), 0.0]).max() < 1e-15
     turn = np.array([1e-1, 1e-2, 1e-3])
     rest = commutator_displacement(turn, turn) / turn[:, None] ** 2 - [0.0, 1.0]
     assert np.abs(rest[:, 0] / turn + 1 / 2).max() < 1e-3  # -turn/2 + turn^3/24.

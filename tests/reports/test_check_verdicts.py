@@ -34,7 +34,7 @@ from reports.check.checked import CheckResult, SweepPlan, check, read_user_model
 from reports.check.judging import pose_distance, reference_motion, refuse_disagreement, soft_motion
 from reports.check.telling import answer_section
 from tests import independent
-from tests.independent_spaces import Equations
+from tests.independent import Equations
 from tests.reports.test_check import FOUR_BAR, INPUTS
 
 STEP = 1e-3  # s, of pymunk

@@ -45,7 +45,7 @@ class RollContact(Valid):
     `friction`: coefficient of friction. `steps`: time constant of the contact in steps, with the largest impedance;
     None for MuJoCo's 0.02 s. `stick`: make slip decay at the largest rate that the integrator allows, 2/dt for RK4 and
     1/dt for others. MuJoCo reads this rate (`solreffriction`) only with the elliptic cone (checked in
-    `tests/engines/test_mujoco_upstream.py`). Raises InvalidMechanism for `stick` with another cone.
+    `tests/engines/test_mujoco_rows.py`). Raises InvalidMechanism for `stick` with another cone.
     """
 
     friction: Positive = 1.0

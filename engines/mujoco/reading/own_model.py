@@ -20,7 +20,7 @@ from engines.mujoco.releases import release_warnings, spelled
 from engines.mujoco.running import logged_warnings
 from engines.mujoco.stiffness import STIFFEST
 from engines.reading import Change, Note, Obstacle, RowRegularisation, left_out
-from engines.sampling import sampled
+from engines.sampling import reactions, sampled
 from reference.joints import Rod
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -254,9 +254,8 @@ class OwnMuJoCo:
             is_valid = np.logical_and.accumulate(is_valid)
             pose, twist, acceleration = self._read(model, qpos[is_valid], qvel[is_valid], len(t))
             warnings = (*log.messages, *release_warnings())
-        reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
-        if self.mechanism.row_count and is_valid.any():
-            reaction[is_valid] = self.mechanism.reaction(pose[is_valid], acceleration[is_valid], twist=twist[is_valid])
+        own = self.mechanism
+        reaction = reactions(own, pose, twist, acceleration, own.inertias, own.gravity)
         return Trajectory(t, pose, twist, reaction, stepping, warnings, reset_at)
 
     def _read(self, model: Any, qpos: Array, qvel: Array, count: int) -> tuple[Array, Array, Array]:

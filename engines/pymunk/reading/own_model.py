@@ -27,7 +27,7 @@ from engines.pymunk.reading.constraints import (
     set_poses,
 )
 from engines.reading import Change, Note, Obstacle, RowRegularisation, left_out, refuse
-from engines.sampling import sampled
+from engines.sampling import reactions, sampled
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
 
@@ -192,13 +192,11 @@ class OwnPymunk:
                 body.angle -= body.angular_velocity * dt / 2
             step(dt / 2)
         stepping = sampled([steps] * samples, advance, record, record_before)
-        reaction = np.full((samples + 1, self.mechanism.row_count), np.nan)
-        finite = np.isfinite(acceleration).all(axis=(1, 2)) & np.isfinite(pose).all(axis=(1, 2))
-        if self.mechanism.row_count and finite.any():
-            reaction[finite] = self.mechanism.reaction(pose[finite], acceleration[finite], twist=twist[finite])
-            # pymunk provides no force for joints of a prescribed motion.
-            names = [joint.name for joint in self.mechanism.joints for _ in range(joint.size)]
-            reaction[:, [name in self.imported.prescribed for name in names]] = np.nan
+        own = self.mechanism
+        reaction = reactions(own, pose, twist, acceleration, own.inertias, own.gravity)
+        # pymunk provides no force for joints of a prescribed motion.
+        names = [joint.name for joint in own.joints for _ in range(joint.size)]
+        reaction[:, [name in self.imported.prescribed for name in names]] = np.nan
         return Trajectory(t, pose, twist, reaction, stepping)
 
     def _stepper(self, space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[float], None]:
