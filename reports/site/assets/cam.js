@@ -1,6 +1,8 @@
 // @ts-check
 /** Two shapes from a drawn motion: the reader draws the path of a point of a body that turns once, and both centrodes follow. */
 
+import { pointerIn } from "./motion.js";
+
 /** @typedef {import("./motion.js").Point} Point
  * @typedef {{cosines: Point[], sines: Point[]}} Series a closed path as a Fourier series: sum of cosines[k] cos(k t) + sines[k] sin(k t)
  * @typedef {{path: Point[], space: Point[], body: Point[], angles: number[]}} Shapes points at equal steps of the angle [m, rad] */
@@ -149,10 +151,7 @@ function begin(place) {
     make();
   }
 
-  const hand = (/** @type {PointerEvent} */ event) => {
-    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(/** @type {SVGGElement} */ (drawing.firstElementChild).getScreenCTM()?.inverse());
-    return /** @type {Point} */ ([x, y]);
-  };
+  const hand = (/** @type {PointerEvent} */ event) => pointerIn(drawing.firstElementChild, event);
   drawing.addEventListener("pointerdown", (event) => {
     drawing.setPointerCapture(event.pointerId);
     event.preventDefault();

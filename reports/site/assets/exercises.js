@@ -124,6 +124,7 @@ const gearDistance = (/** @type {number} */ angle) => 0.75 / (1 + 0.5 * Math.cos
 const gearRatio = (/** @type {number} */ angle) => gearDistance(angle) / (2 - gearDistance(angle));
 const ladder = () => sliding(sliding(linkage({ A: [1, 0], B: [0, Math.sqrt(3)] }, ["AB"], ""), 0, [-1, 0], 0), 0, [1, 0], Math.PI / 2);
 
+const TURNING = { angle: 0, rate: 3, acceleration: 0, speed: 2, push: 0, ahead: 0, left: 0 }; // the blade of a skate at constant rates
 const PERSON = ["AB", "BH", "HS", "HK", "KE"];
 /** @type {Record<string, Point>} */
 const STANDING = { A: [0, 0], B: [0.1, 0.4], H: [0.25, 0.8], S: [0.2, 1.4], K: [0.4, 0.45], E: [0.5, 0], L: [0.4, 1.1], G: [0.7, 1.2] };
@@ -172,19 +173,11 @@ export const ANSWERS = {
   bottom_rate: () => Math.max(...swing().twist.filter((_, index) => index % 3 === 2).map(Math.abs)),
   bottom_force: () => Math.max(...swing().forces[0].force.filter((_, index) => index % 2 === 1)),
   tip_acceleration: () => {
-    // Each link adds alpha k x r - rate^2 r.
-    const parts = [[30, 2, 1], [60, -1, 3]].map(([angle, rate, alpha]) => {
-      const [x, y] = [Math.sin(rad(angle)), -Math.cos(rad(angle))];
-      return [-alpha * y - rate * rate * x, alpha * x - rate * rate * y];
-    });
-    return Math.hypot(parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]);
+    const [a, b] = [[30, 2, 1], [60, -1, 3]].map(([angle, rate, acceleration]) => ERRATA[28].of({ angle: rad(angle), rate, acceleration, length: 1 }).decides);
+    return Math.hypot(a[0] + b[0], a[1] + b[1]);
   },
   speed_ahead: () => Math.hypot(2, 3 * 0.3),
-  turning_acceleration: () => {
-    // The sideways component of the change of the velocity, for a short time.
-    const time = 1e-6;
-    return (2 * Math.sin(3 * time) - 2 * Math.sin(-3 * time)) / (2 * time);
-  },
+  turning_acceleration: () => ERRATA[11].of(TURNING).decides[1],
   skated_aside: () => Array.from({ length: 20_000 }, () => ({ turn: 1e-4, slide: 5e-5 })).reduce((pose, { turn, slide }) =>
     moved(moved(pose, { turn: turn / 2, slide }), { turn: turn / 2, slide: 0 }), START)[1],
   turning_circle: () => 1 / CURVE,
@@ -206,7 +199,7 @@ export const ANSWERS = {
   rocker_rate: () => rates(fourBar(0), [[-1, 0, 10]])[8],
   ring_contact: () => ERRATA[4].of({ ...ERRATA[4].start, rate: 3, fixed: 0.5, rolling: 0.2 }).decides[0],
   terms_apart: () => {
-    const { printed, decides } = ERRATA[11].of({ angle: 0, rate: 3, acceleration: 0, speed: 2, push: 0, ahead: 0, left: 0 });
+    const { printed, decides } = ERRATA[11].of(TURNING);
     return Math.hypot(printed[0] - decides[0], printed[1] - decides[1]);
   },
   bar_up: () => ERRATA[28].of({ angle: rad(60), rate: -1, acceleration: 3, length: 1 }).decides[1],

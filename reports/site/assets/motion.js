@@ -23,6 +23,12 @@ export const NAMES = { munk: "pymunk", mujoco: "MuJoCo" };
 export const MARKS = { munk: 1, mujoco: 2 };
 export const UNITS = { angle: "rad", position: "m" };
 
+/** Return the position of a pointer in the coordinates of a part of a drawing. @param {Element|null} part @param {PointerEvent} event @returns {Point} */
+export function pointerIn(part, { clientX, clientY }) {
+  const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(/** @type {SVGGraphicsElement} */ (part).getScreenCTM()?.inverse());
+  return [x, y];
+}
+
 /** Return the pose [x, y, angle] at an instant, or NaN.
  * @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame @param {number} body
  * @returns {[number, number, number]} */

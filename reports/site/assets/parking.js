@@ -1,6 +1,8 @@
 // @ts-check
 /** A skate that the reader turns and slides by hand to a place straight sideways, and the commutator of both moves. */
 
+import { pointerIn } from "./motion.js";
+
 /** @typedef {[number, number, number]} Pose x, y [m] and angle [rad] of the blade
  * @typedef {{turn: number, slide: number}} Move a turn [rad] about the blade or a slide [m] along it */
 
@@ -112,7 +114,7 @@ function begin(place) {
   });
   drawing.addEventListener("pointermove", (event) => {
     if (!drawing.hasPointerCapture(event.pointerId)) return;
-    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(/** @type {SVGGElement} */ (drawing.firstElementChild).getScreenCTM()?.inverse());
+    const [x, y] = pointerIn(drawing.firstElementChild, event);
     const [c, s] = [Math.cos(pose[2]), Math.sin(pose[2])];
     const [along, across] = [c * (x - pose[0]) + s * (y - pose[1]) - 0.24, c * (y - pose[1]) - s * (x - pose[0])];
     // One kind of move at a time, so that the moves can be counted.

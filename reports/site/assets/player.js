@@ -3,7 +3,7 @@
 
 import { errorChart, svg } from "./chart.js";
 import { Lens } from "./lens.js";
-import { UNITS, placed, poseAt, told } from "./motion.js";
+import { UNITS, placed, pointerIn, poseAt, told } from "./motion.js";
 import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
@@ -179,11 +179,7 @@ export class Player {
     const frame_ = /** @type {HTMLElement} */ (this.figure.querySelector(".frame"));
     /** @type {{body: number, point: number[]}|null} */
     let held = null;
-    const hand = (/** @type {PointerEvent} */ event) => {
-      const world = /** @type {SVGGElement} */ (this.stage.querySelector(".world"));
-      const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(/** @type {DOMMatrix} */ (world.getScreenCTM()).inverse());
-      return [x, y];
-    };
+    const hand = (/** @type {PointerEvent} */ event) => pointerIn(this.stage.querySelector(".world"), event);
     frame_.addEventListener("pointerdown", (event) => {
       const take = this.take;
       if (!take) return;
