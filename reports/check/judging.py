@@ -13,11 +13,12 @@ from scipy.integrate import solve_ivp
 
 from engines import Unsupported
 from engines.lagrange import TRUTH, Judge, Lagrange
-from engines.lagrange.dynamics import Dynamics, constrained_acceleration
+from engines.lagrange.dynamics import Dynamics, constrained_acceleration, solve_rows
 from engines.reading import Reading, RowRegularisation, left_out
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
-from reference.rows import undetermined
+from reference.plane import COMPLEX_STEP
+from reference.rows import RANK_TOLERANCE, undetermined
 from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
@@ -30,16 +31,27 @@ SOFT_TOLERANCE = 1e-10  # Relative tolerance, far below the truncation errors of
 def accelerations(
     mechanism: Mechanism, pose: Array, twist: Array, t: float, give: RowRegularisation | None = None
 ) -> Array:
-    """Accelerations (bodies, 3) [m/s^2, rad/s^2] with ideal joints, or with soft joints if `give` is a regularisation.
-    Soft rows satisfy J a = b - damping slip - stiffness gap - compliance F. The bias b is that of the mechanism, or
-    `give.initial_bias` unless this is NaN."""
+    """Accelerations (bodies, 3) [m/s^2, rad/s^2] with ideal joints, or with soft joints if `give` is not None."""
     if give is None or not mechanism.row_count:
         return constrained_acceleration(mechanism, pose, twist)[0]
-    bias = mechanism.bias(pose, twist)
-    slip = mechanism.rows(pose) @ twist.reshape(-1) - mechanism.rate
-    gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(t)))
-    target = np.where(np.isnan(give.initial_bias), bias, give.initial_bias) - give.damping * slip - give.stiffness * gap
-    return constrained_acceleration(mechanism, pose, twist, target, give.compliance)[0]
+    return soft_accelerations(mechanism, pose, twist, mechanism.joint_rows.gap(pose, np.asarray(t)), give)
+
+
+def soft_accelerations(mechanism: Mechanism, pose: Array, twist: Array, gap: Array, give: RowRegularisation) -> Array:
+    """Accelerations (bodies, 3) [m/s^2, rad/s^2] with soft joints, whose gaps (rows,) [m, rad] are given.
+
+    Soft rows satisfy J a = b - damping slip - stiffness gap - compliance F. The bias b is that of the mechanism, or
+    `give.initial_bias` unless this is NaN.
+    """
+    # One complex evaluation of the rows also gives their derivative along the motion, as in `Mechanism.bias`.
+    along = mechanism.joint_rows.dense(pose + 1j * COMPLEX_STEP * twist)
+    rows, velocity = np.real(along), twist.reshape(-1)
+    bias = np.where(np.isnan(give.initial_bias), -(np.imag(along) / COMPLEX_STEP) @ velocity, give.initial_bias)
+    target = bias - give.damping * (rows @ velocity - mechanism.rate) - give.stiffness * np.nan_to_num(gap)
+    free, weighted = mechanism.unconstrained(pose, twist).reshape(-1), rows / mechanism.inertias.reshape(-1)
+    matrix = weighted @ rows.T + give.compliance
+    reaction = solve_rows(matrix, target - rows @ free, least_pivot=RANK_TOLERANCE)
+    return (free + weighted.T @ reaction).reshape(-1, 3)
 
 
 def soft_motion(
@@ -61,7 +73,7 @@ def soft_motion(
             return np.full_like(state, np.nan)
         pose, twist = state[:count].reshape(-1, 3), state[count:].reshape(-1, 3)
         gap = np.nan_to_num(mechanism.joint_rows.gap(pose, np.asarray(at)))
-        change = accelerations(mechanism, pose, twist, at, give(gap, pose))
+        change = soft_accelerations(mechanism, pose, twist, gap, give(gap, pose))
         return np.concatenate([state[count:], change.reshape(-1)])
 
     start = np.concatenate([mechanism.pose.reshape(-1), (mechanism.twist if twist is None else twist).reshape(-1)])

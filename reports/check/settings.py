@@ -18,6 +18,9 @@ HELPFUL_RATIO = 0.75  # A smaller step is helpful if it reduces the error below 
 SATURATED_ERROR = 1.0  # The causes of a larger error [rad, or lengths of the mechanism] can't be separated.
 # A saturated error counts as constant if its relative change is smaller. Errors of coarse steps seldom agree by chance.
 SATURATED_CHANGE = 0.01
+# A smaller step reduces an error as the last halving of the step did. The error may be smaller by this factor, since
+# errors of coarse steps are irregular.
+IRREGULARITY = 4.0
 SMALLER_STEPS = 4  # Number of smaller steps with the user's settings, which separate the causes of the error.
 
 
@@ -91,7 +94,8 @@ def run_settings_sweep(
             continue
         for_parts = plan.goal is None and same_options[:1] == settings[:1] and len(same_options) <= SMALLER_STEPS
         dear = plan.goal is None and (tenth := a_tenth(settings, tolerance)) is not None and cost > tenth.cost
-        if (dear or _has_plateaued(same_options)) and not (all_wanted or for_parts):
+        dominated = plan.goal is None and _is_dominated(settings, same_options, change.dt, cost)
+        if (dear or dominated or _has_plateaued(same_options)) and not (all_wanted or for_parts):
             continue
         run = model.run(samples, every, change)
         rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))
@@ -99,6 +103,20 @@ def run_settings_sweep(
     table = [done[index] for index in sorted(done)]
     front = pareto_front(table)
     return [replace(setting, front=setting in front) for setting in table]
+
+
+def _is_dominated(table: list[SettingRun], same_options: list[SettingRun], dt: float, cost: float) -> bool:
+    """Whether a setting in the table costs less than `cost` [s] and has a smaller error than is expected at a step dt.
+
+    The error at dt is extrapolated from the two smallest steps with the same options, unless an error is saturated.
+    """
+    last = sorted(same_options, key=lambda setting: setting.change.dt)[:2]
+    if len(last) < 2 or not max(setting.error for setting in last) < SATURATED_ERROR:
+        return False
+    (small, error), (large, coarser) = ((setting.change.dt, setting.error) for setting in last)
+    order = np.log(coarser / error) / np.log(large / small) if coarser > error > 0 else 0.0
+    expected = error * (dt / small) ** order / IRREGULARITY
+    return any(setting.cost < cost and setting.error < expected for setting in table)
 
 
 def _quick_choice(changes: list[Change]) -> list[int]:

@@ -82,6 +82,12 @@ def limited_forces(model: Any) -> list[str]:
     return [name_of(model, kind, index) for kind, limited in tables for index in np.flatnonzero(limited)]
 
 
+def _has_limits_or_contacts(model: Any) -> bool:
+    """Whether a position of the model may have rows of limits of joints and tendons, or rows of contacts."""
+    touching = model.npair or model.nflex or (model.geom_contype.any() and model.geom_conaffinity.any())
+    return bool(touching or model.jnt_limited.any() or model.tendon_limited.any())
+
+
 def _at_limits(model: Any, data: Any) -> list[str]:
     """The elements whose force is at a limit in the state of `data`, after mj_fwdPosition."""
     unlimited = copy.copy(model)
@@ -184,6 +190,8 @@ class OwnMuJoCo:
         kinds = mujoco.mjtConstraint
         touching = range(int(kinds.mjCNSTR_CONTACT_FRICTIONLESS), int(kinds.mjCNSTR_CONTACT_ELLIPTIC) + 1)
         has_limits = bool(limited_forces(model))
+        if not (has_limits or _has_limits_or_contacts(model)):
+            return []
         for at, qpos, rates in zip(t, positions(self.planar, pose), twist, strict=True):
             data.qpos[:] = qpos
             mujoco.mj_fwdPosition(model, data)

@@ -7,6 +7,7 @@ inverse inertia. The impedance d grows with the gap. MuJoCo documents the law in
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -69,23 +70,32 @@ def declared(
         if joints and len(equality_rows(planar.data, index))
     ]
     is_exact = bool(planar.model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT))
+    mobilities_at_start = [_mobility(planar.data, rows, mechanism.row_count) for rows in equalities]
 
     def regularisation(gap: Array, pose: Array) -> RowRegularisation:
         stiffness, damping = np.zeros((2, mechanism.row_count))
         compliance = np.zeros((mechanism.row_count, mechanism.row_count))
-        data = moved(pose) if is_exact else planar.data
-        for rows in equalities:
-            d = impedance_of(rows.solimp, float(np.linalg.norm(rows.lengths * gap[rows.ideal])))
+        mobilities = mobilities_at_start
+        if is_exact:
+            data = moved(pose)
+            mobilities = [_mobility(data, rows, mechanism.row_count) for rows in equalities]
+        for rows, mobility in zip(equalities, mobilities, strict=True):
+            d = impedance_of(rows.solimp, math.hypot(*(rows.lengths * gap[rows.ideal]).tolist()))
             stiffness[rows.ideal], damping[rows.ideal] = rows.stiffness * d, rows.damping
-            diagonal = _diagonal(data, rows.equality)
-            for of_mujoco, of_ideal, multiples in rows.blocks:
-                # MuJoCo's rows are multiples of ours and satisfy R f = a_ref - a.
-                inverse = multiples.T @ (multiples / diagonal[of_mujoco, None])
-                block = np.ix_(rows.ideal[of_ideal], rows.ideal[of_ideal])
-                compliance[block] = (1 - d) / d * np.linalg.inv(inverse)
+            compliance += (1 - d) / d * mobility
         return RowRegularisation(stiffness, damping, compliance, initial_bias)
 
     return regularisation
+
+
+def _mobility(data: Any, rows: _EqualityRows, count: int) -> Array:
+    """The inverse inertia (count, count) of the mechanism's rows by MuJoCo's estimate, zero for other equalities."""
+    diagonal, out = _diagonal(data, rows.equality), np.zeros((count, count))
+    for of_mujoco, of_ideal, multiples in rows.blocks:
+        # MuJoCo's rows are multiples of ours and satisfy R f = a_ref - a.
+        inverse = multiples.T @ (multiples / diagonal[of_mujoco, None])
+        out[np.ix_(rows.ideal[of_ideal], rows.ideal[of_ideal])] = np.linalg.inv(inverse)
+    return out
 
 
 def _equality_rows(planar: PlanarModel, equality: int, ideal: list[int], ours: Array, theirs: Array) -> _EqualityRows:
@@ -113,8 +123,8 @@ def _diagonal(data: Any, equality: int) -> Array:
 
 def impedance_of(solimp: Array, gap: float) -> float:
     """The impedance of a row at a gap [m or rad] for `solimp` (5,)."""
-    low, high = (float(np.clip(value, MIN_IMPEDANCE, MAX_IMPEDANCE)) for value in solimp[:2])
-    width, middle, power = (float(value) for value in solimp[2:5])
+    *limits, width, middle, power = solimp.tolist()
+    low, high = (min(max(value, MIN_IMPEDANCE), MAX_IMPEDANCE) for value in limits)
     part = min(gap / width, 1.0) if width > 0 else 1.0
     if power <= 1:
         rise = part
