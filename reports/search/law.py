@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from engines import Engine, Instant, NotDeclared
 from engines.conformance.same import Described, Isometry, Three
 from engines.constrained import constrained
+from engines.remembered import by_identity
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -30,6 +31,8 @@ NUDGE_COUNT, NUDGE_SHARE = 3, 1e-3  # Shifts are NUDGE_SHARE times a distance; r
 LAW_TOLERANCE = 1e-9  # The tolerance is a thousand times the rounding error with independent rows.
 PRECISION_MARGIN = 10.0  # Tolerance in units of the engine's precision.
 INSTANT_STEP, INSTANT_STEPS = 0.01, 5  # The step is in units of the mechanism's time scale.
+# More than `chunk.CHUNK_SIZE`, since all engines run the cases of one chunk before the next chunk.
+CACHED_MECHANISMS = 16
 Errors = Mapping[str, tuple[float, float]]  # Check -> (error, tolerance).
 
 
@@ -90,6 +93,12 @@ def turned_in_a_step(mechanism: Mechanism, dt: float, pose: Array, twist: Array)
     return float(max(spin, dt * (np.abs(bias) / np.where(moving > 0, moving, np.inf)).max(initial=0.0)))
 
 
+@by_identity(CACHED_MECHANISMS)
+def turned_at_start(mechanism: Mechanism) -> float:
+    """The result of `turned_in_a_step` for a step of INSTANT_STEP from the start."""
+    return turned_in_a_step(mechanism, INSTANT_STEP * mechanism.time_scale, mechanism.pose, mechanism.twist)
+
+
 def driving_force(mechanism: Mechanism, twist: Array) -> float:
     """The scale [N] of gravity, inertia forces and forces of elements."""
     rate = np.abs(twist[:, 2]).max()
@@ -137,7 +146,7 @@ def _instants(engine: Engine, mechanism: Mechanism) -> Sequence[Instant] | NotDe
         return turned_in_a_step(mechanism, dt, *instant.state) <= 1
 
     rolls = any(isinstance(joint, Roll) for joint in mechanism.joints)
-    short = turned_in_a_step(mechanism, dt, mechanism.pose, mechanism.twist) <= 1 and not rolls
+    short = turned_at_start(mechanism) <= 1 and not rolls
     declared = engine.stepped(mechanism).instants(mechanism, dt, INSTANT_STEPS if short else 0)
     if isinstance(declared, NotDeclared):
         return declared

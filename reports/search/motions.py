@@ -25,6 +25,7 @@ from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 from reports.gate.judge import TABLEAUS, giving_way, in_numpy, stepped
 from reports.search.law import (
+    CACHED_MECHANISMS,
     NOISE_MARGIN,
     CheckSkipped,
     Errors,
@@ -52,8 +53,6 @@ ERROR_FLOORS = {"motion": 1e-8, "reactions": 1e-5}
 FINEST_DIVISION = 64
 DIVERGED_ERROR = 10.0  # A run with a larger error, relative to the motion, has diverged.
 DISTANT_POSE = 0.1  # Reactions are not compared if the pose error relative to the length scale is larger.
-# More than `chunk.CHUNK_SIZE`, since all engines run the cases of one chunk before the next chunk.
-CACHED_MECHANISMS = 16
 RIGID_COMPLIANCE = 1e-10  # A joint with a smaller compliance, in units of the squared time scale, counts as ideal.
 ENGINE_WARNED = CheckSkipped("the engine warns that something is wrong")
 
@@ -61,6 +60,13 @@ ENGINE_WARNED = CheckSkipped("the engine warns that something is wrong")
 @by_identity(CACHED_MECHANISMS)
 def judge_motion(mechanism: Mechanism) -> Trajectory:
     return TRUTH.build(mechanism, MOTION_SPAN * mechanism.time_scale / MOTION_SAMPLES)(MOTION_SAMPLES, 1)
+
+
+@by_identity(CACHED_MECHANISMS)
+def _largest_turn(mechanism: Mechanism, dt: float) -> float:
+    """The largest result of `turned_in_a_step` at the samples of the judge's motion."""
+    truth = judge_motion(mechanism)
+    return max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True))
 
 
 def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped:
@@ -80,7 +86,7 @@ def motion_errors(engine: Engine, mechanism: Mechanism) -> Errors | CheckSkipped
         return CheckSkipped("the judge finds no motion")
     if truth.unresolved_at is not None:
         return CheckSkipped(f"the judge does not reach its tolerance of {JUDGE_CLAIM:g}")
-    if max(turned_in_a_step(mechanism, dt, *state) for state in zip(truth.pose, truth.twist, strict=True)) > 1:
+    if _largest_turn(mechanism, dt) > 1:
         return CheckSkipped("something turns by more than a radian in a step, so no order is visible")
     case = _Case(engine, mechanism, promise, truth, dt)
     halved = case.halved(coarse)

@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 
 from engines import CLAIM, Engine
 from engines.conformance.same import Change, Isometry, joints_swapped, relabelled
+from engines.remembered import by_identity
 from reference.joints import Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.trajectory import Trajectory
 from reports.search.law import (
+    CACHED_MECHANISMS,
     INSTANT_STEP,
     INSTANT_STEPS,
     NOISE_MARGIN,
@@ -26,6 +28,7 @@ from reports.search.law import (
     Fault,
     difference,
     iter_nudged,
+    turned_at_start,
     turned_in_a_step,
 )
 from reports.search.parts import Recipe
@@ -56,18 +59,17 @@ UNIT_CHANGES = {"in other lengths": (-3, 0), "in other masses": (0, 2)}
 RELATIONS = (*CHANGES, *UNIT_CHANGES)
 
 
-def relation_errors(engine: Engine, recipe: Recipe, number: int) -> Errors | CheckSkipped:
+def relation_errors(engine: Engine, mechanism: Mechanism, recipe: Recipe, number: int) -> Errors | CheckSkipped:
     """The error of the motion in another description, and its tolerance, both relative to the motion."""
-    mechanism = build(recipe)
     if any(isinstance(joint, Roll) for joint in mechanism.joints) and engine.uses_contacts:
         return CheckSkipped("rounding decides whether two shapes touch")
-    if _turns_too_far(mechanism, mechanism.pose, mechanism.twist):
+    if turned_at_start(mechanism) > 1:
         return TOO_LONG
     name = RELATIONS[number % len(RELATIONS)]
     # The default settings of MuJoCo and pymunk contain the lengths 1 mm and 0.1 m.
     if name in UNIT_CHANGES and engine.variant == "default":
         return CheckSkipped("the default settings contain lengths")
-    described = describe_otherwise(recipe, mechanism, name)
+    described = _cached_description(mechanism, recipe, name)
     if isinstance(described, CheckSkipped):
         return described
     changed, back = described
@@ -99,6 +101,13 @@ def describe_otherwise(
         return pose[-1], twist[-1]
 
     return changed, last
+
+
+@by_identity(CACHED_MECHANISMS)  # All engines of a case share the description.
+def _cached_description(
+    mechanism: Mechanism, recipe: Recipe, name: str
+) -> tuple[Mechanism, Callable[[Trajectory], State]] | CheckSkipped:
+    return describe_otherwise(recipe, mechanism, name)
 
 
 def _compare_runs(
@@ -145,7 +154,7 @@ def _compare_runs(
         if engine.variant == "default":
             return CheckSkipped("the motion diverges with the default settings")
         raise Fault(f"the motion diverged within {INSTANT_STEPS} steps without a warning")
-    if _turns_too_far(mechanism, *state):
+    if turned_in_a_step(mechanism, INSTANT_STEP * mechanism.time_scale, *state) > 1:
         return TOO_LONG
     if first.estimate is not None:  # the estimate must include the effect of rounding
         unit = np.array([mechanism.length_scale, mechanism.length_scale, 1.0])
@@ -164,7 +173,3 @@ def _compare_runs(
     if NOISE_MARGIN * noise > MAX_NOISE:
         return CheckSkipped("rounding or the residual of the solver changes the motion by more than a hundredth")
     return error, max(floor, NOISE_MARGIN * noise)
-
-
-def _turns_too_far(mechanism: Mechanism, pose: Array, twist: Array) -> bool:
-    return turned_in_a_step(mechanism, INSTANT_STEP * mechanism.time_scale, pose, twist) > 1

@@ -13,7 +13,7 @@ import numpy as np
 from engines import Engine, EngineWrapper, Unsupported
 from reference.mechanism import Mechanism
 from reports.search import mechanisms, motions, mujoco_alone, relations
-from reports.search.law import LAW_TOLERANCE, CheckSkipped, Errors, Fault, instant_errors
+from reports.search.law import CACHED_MECHANISMS, LAW_TOLERANCE, CheckSkipped, Errors, Fault, instant_errors
 from reports.search.mechanisms import recipe_of_shape
 from reports.search.parts import ALL_KINDS, Recipe
 from reports.search.recipe import build
@@ -90,8 +90,8 @@ class Alone:
 
 Subject = Adapted | Alone
 # Mechanisms are cached, so that all engines share the tables of rolling curves and the judge's motion.
-_cached_recipe = lru_cache(motions.CACHED_MECHANISMS)(mechanisms.recipe)
-_cached_mechanism = lru_cache(motions.CACHED_MECHANISMS)(build)
+_cached_recipe = lru_cache(CACHED_MECHANISMS)(mechanisms.recipe)
+_cached_mechanism = lru_cache(CACHED_MECHANISMS)(build)
 
 
 def is_shaped(subject: Subject) -> bool:
@@ -172,7 +172,7 @@ ORACLES: Mapping[str, Oracle] = {
     "relations": Oracle(
         "description",
         "is the motion independent of the description of the mechanism?",
-        lambda engine, mechanism, recipe, number: relations.relation_errors(engine, recipe, number),
+        relations.relation_errors,
         relations.RELATIONS,
     ),
     MOTION_ORACLE: Oracle(
