@@ -9,6 +9,7 @@ import { pointerIn } from "./motion.js";
 
 const HARMONICS = 3; // highest frequency of a drawn path, which makes the shapes smooth
 const POINTS = 360; // points of each shape
+const FEWER = 120; // points of the shapes among which a number of turns is selected; with 360 points a slow phone would be blocked for 60 ms
 const SMALL = 1e-9; // an extent of the path of the centre that counts as zero [m]
 const ROUNDING = 1e-18; // a product of two areas [m^4]: a curve that is traced twice touches itself to rounding and does not cross itself
 
@@ -147,7 +148,7 @@ function begin(place) {
   /** Take a path; another number of turns is selected if only then both shapes can be cut. @param {Series} next */
   function take(next) {
     series = next;
-    turns.value = [turns.value, "2", "-2", "1", "-1"].find((turn) => cuttable(shapesOf(series, Number(turn)))) ?? turns.value;
+    turns.value = [turns.value, "2", "-2", "1", "-1"].find((turn) => cuttable(shapesOf(series, Number(turn), FEWER))) ?? turns.value;
     make();
   }
 
