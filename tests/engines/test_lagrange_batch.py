@@ -7,7 +7,7 @@ import pytest
 
 from engines.lagrange import Batch, Lagrange, Sweep, batch, loading, run_batch
 from reference.checks import InvalidMechanism
-from reference.joints import Drive, Pin
+from reference.joints import Drive, Pin, Roll
 from reference.mechanism import Mechanism
 from reference.scenes.catalogue import scene
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -36,6 +36,19 @@ def small_groups_are_compiled(monkeypatch):
     monkeypatch.setattr(batch, "WORTH_COMPILING", 0.0)
 
 
+@pytest.fixture
+def no_mechanism_is_run_alone(monkeypatch):
+    """A wrong program would open joints, and single runs would hide that."""
+    run_alone = batch._Loop._run_alone
+
+    def refuse(loop, mechanisms):
+        assert not len(mechanisms)
+        return run_alone(loop, mechanisms)
+
+    monkeypatch.setattr(batch._Loop, "_run_alone", refuse)
+
+
+@pytest.mark.usefixtures("no_mechanism_is_run_alone")
 @pytest.mark.parametrize(
     "engine", [DOP853, Lagrange("rk4", "baumgarte"), Lagrange("euler", "none")], ids=lambda engine: engine.variant
 )
@@ -51,16 +64,20 @@ def test_four_bars_of_random_sizes_move_as_in_single_runs(engine):
         assert largest_difference(found, number, mechanism, engine, 2e-3) < allowed
 
 
-def test_mixed_random_mechanisms_move_as_in_single_runs():
+def test_mixed_random_mechanisms_move_as_in_single_runs(monkeypatch):
     mechanisms = [random_mechanism(21, number, ALL_KINDS) for number in range(12)]
     kinds = {type(joint).__name__ for mechanism in mechanisms for joint in mechanism.joints}
     assert {"Pin", "Slot", "Skate", "Rod", "Gear", "Weld", "Drive", "Roll"} <= kinds
     dt = 1e-3 * min(mechanism.time_scale for mechanism in mechanisms)
+    alone, run_alone = [], batch._Loop._run_alone
+    monkeypatch.setattr(batch._Loop, "_run_alone", lambda loop, own: alone.extend(own) or run_alone(loop, own))
     found = run_batch(Lagrange("rk4"), mechanisms, dt, 3, 2)
+    assert all(any(isinstance(joint, Roll) for joint in mechanism.joints) for mechanism in alone)
     for number, mechanism in enumerate(mechanisms):
         assert largest_difference(found, number, mechanism, Lagrange("rk4"), dt) < 1e-12
 
 
+@pytest.mark.usefixtures("no_mechanism_is_run_alone")
 def test_a_sweep_moves_its_start_onto_the_joints_and_agrees_with_single_runs():
     mechanism = four_bar(crank_rate=3.0, drive=3.0)
     (crank,) = (joint for joint in mechanism.joints if isinstance(joint, Drive))
@@ -84,6 +101,7 @@ def test_a_sweep_moves_its_start_onto_the_joints_and_agrees_with_single_runs():
     np.testing.assert_allclose(run_batch(DOP853, sweep, 1e-2, 5).pose, found.pose, rtol=0, atol=1e-14)
 
 
+@pytest.mark.usefixtures("no_mechanism_is_run_alone")
 def test_angles_in_all_quarters_and_after_many_turns_give_the_motion_of_a_single_run():
     bars = [pendulum(angle=quarter * np.pi / 2 + 0.3, rate=1.0) for quarter in range(4)]
     turned = [
