@@ -10,6 +10,7 @@ import typer
 
 from engines import method_name
 from engines.registry import ENGINES
+from reports.bench.many import measure_batch, measure_trees
 from reports.bench.site import measure_site
 from reports.bench.times import (
     COMMAND_TURNS,
@@ -101,6 +102,7 @@ def _print_judge() -> None:
     truths = measure_truths(scenes)  # These come first, since some motions are cached.
     total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
     _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
+    _print_rows("the judge: many mechanisms, and many bodies", [*measure_batch(), *measure_trees()])
 
 
 def _print_worlds(counts: Sequence[str], device: str | None) -> None:

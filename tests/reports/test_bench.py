@@ -9,6 +9,7 @@ from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reference.scenes.rolling.scenes import SquareOnCatenaries
 from reports.bench import times
+from reports.bench.many import measure_batch, measure_trees
 from reports.bench.times import (
     measure_command,
     measure_grid,
@@ -48,6 +49,12 @@ def test_the_timed_runs_of_the_judge_are_accurate_and_need_numba(monkeypatch):
     monkeypatch.setattr("engines.lagrange.engine.installed", lambda: False)
     with pytest.raises(BadInput, match="the extra 'fast'"):
         measure_judge()
+
+
+def test_the_timed_batch_agrees_with_single_runs_and_trees_of_all_sizes_are_timed():
+    if loading.installed():
+        assert measure_batch(40)[-1][1] < 1e-12
+        assert len(list(measure_trees((3, 10), turns=1))) == 8
 
 
 def test_exact_motions_are_sorted_by_cost_and_a_scene_without_one_is_left_out():
