@@ -10,6 +10,7 @@ import typer
 
 from reports.cli.streams import written
 from reports.model.ending import FINE, STATUSES, BadInput
+from reports.run import worker
 
 # Command -> (module and function in `reports.cli`, first sentence of the help).
 COMMANDS = {
@@ -31,6 +32,7 @@ COMMANDS = {
     "export": ("export:export", "Write a scene as a file that runs without this suite, with its truth in comments."),
     "view": ("export:view", "Look at a scene: in an engine's viewer, or else as an animation in a file."),
 }
+EARLY = ("run", "search")  # Worker processes of these commands import engines while this process imports the command.
 LOOK: Any = {"add_completion": False, "pretty_exceptions_enable": False, "rich_markup_mode": None}
 
 
@@ -59,6 +61,8 @@ def invoke(arguments: Sequence[str]) -> int:
         # The `main` of typer is not called, since it changes the exit status after Ctrl-C and for a closed pipe.
         with written():  # For --help.
             if words[0] in COMMANDS:
+                if words[0] in EARLY and "--help" not in words:
+                    worker.start_early("numba")
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
             else:
                 parser, called = program(), "crosscheck"

@@ -27,6 +27,9 @@ OURS = ("reference", "engines", "reports")
 MEASURING = ("reference", "engines", "reports/model", "reports/run")  # Rows depend on these folders.
 SUFFIXES = {f".{suffix.rpartition('.')[2]}" for suffix in (*SOURCE_SUFFIXES, *EXTENSION_SUFFIXES)}
 INSTALLED = {"site-packages", "dist-packages"}  # Modules in these folders are identified by their versions.
+NAME_FIELD = re.compile(r"^Name:(.*)$", re.MULTILINE)  # In the metadata of a distribution.
+# The first folder of each Python file in the list of a distribution's files, or the name of a file without a folder.
+MODULE_FILE = re.compile(r'^"?([^/,"\n]+?)(?:/[^,"\n]*)?\.py"?,', re.MULTILINE)
 SCIENTIFIC = ("numpy", "scipy")  # Packages on which every result depends.
 SHORT, USUAL, LONG = 8, 16, 32  # Numbers of hexadecimal digits in tables, names of files, and cache keys.
 
@@ -113,7 +116,17 @@ def _content(paths: Iterable[Path]) -> str:
 
 @cache
 def _distributions() -> Mapping[str, list[str]]:
-    return metadata.packages_distributions()
+    """Top-level module -> names of the installed distributions that have it.
+
+    `metadata.packages_distributions` also parses every path and all metadata, which takes half a second.
+    """
+    holders: dict[str, list[str]] = {}
+    for distribution in metadata.distributions():
+        if name := NAME_FIELD.search(distribution.read_text("METADATA") or distribution.read_text("PKG-INFO") or ""):
+            modules = (distribution.read_text("top_level.txt") or "").split()
+            for module in modules or set(MODULE_FILE.findall(distribution.read_text("RECORD") or "")):
+                holders.setdefault(module, []).append(name[1].strip())
+    return holders
 
 
 def with_required(distributions: Iterable[str]) -> set[str]:
