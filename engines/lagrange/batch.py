@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -214,6 +213,8 @@ class _Loop:
         self, machine: MachineCode, group: _Group, samples: int, moves_start: bool
     ) -> tuple[Array, Array, Array]:
         """Poses, twists (mechanisms, samples + 1, bodies, 3) and smallest pivots (mechanisms,)."""
+        from concurrent.futures import ThreadPoolExecutor  # imported here, as numba above: most processes step no batch
+
         count, bodies = group.pose.shape[:2]
         parameters = np.stack([*group.numbers.values()], axis=1) if group.numbers else np.empty((count, 0))
         poses, twists = np.empty((2, count, samples + 1, bodies, 3))
