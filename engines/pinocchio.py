@@ -119,7 +119,7 @@ class PinocchioModel:
         self.joints: dict[int | None, int] = {None: 0}  # The last joint of each body; joint 0 is the universe.
         self.anchors: dict[int | None, Array] = {None: np.zeros(2)}  # From the centre of mass to the last joint [m].
         self.address: list[int] = [0] * tree.coordinates  # Index of each tree coordinate in the engine's vectors.
-        self._add_children(None)
+        self._add_links()
         self.data = self.model.createData()
         self.loops = pinocchio.StdVec_RigidConstraintModel()
         self.loop_data = pinocchio.StdVec_RigidConstraintData()
@@ -140,12 +140,16 @@ class PinocchioModel:
     def _placed(self, offset: Any) -> Any:
         return self.pin.SE3(np.eye(3), np.array([offset[0], offset[1], 0.0]))
 
-    def _add_children(self, parent: int | None) -> None:
+    def _add_links(self) -> None:
         """Add the bodies depth first, since the engine's sparse factorisation requires this order."""
+        children: dict[int | None, list[Link]] = {}
         for link in self.tree.links:
-            if link.parent == parent:
-                self._add(link)
-                self._add_children(link.body)
+            children.setdefault(link.parent, []).append(link)
+        waiting = children.get(None, [])[::-1]
+        while waiting:  # a recursion would be too deep for a chain of a thousand bodies
+            link = waiting.pop()
+            self._add(link)
+            waiting += children.get(link.body, [])[::-1]
 
     def _add(self, link: Link) -> None:
         pin, body = self.pin, self.mechanism.bodies[link.body]

@@ -9,7 +9,9 @@ from typing import Annotated
 import typer
 
 from engines import method_name
+from engines.lagrange import loading
 from engines.registry import ENGINES
+from reports.bench import peers
 from reports.bench.many import measure_batch, measure_trees
 from reports.bench.site import measure_site
 from reports.bench.times import (
@@ -23,10 +25,15 @@ from reports.bench.times import (
     measure_worlds,
 )
 from reports.cli.known import choose
-from reports.cli.options import SITE, DeviceName, Scenes, choose_device
+from reports.cli.options import FOLDER, SITE, DeviceName, Folder, Scenes, choose_device, listed, refuse_file
+from reports.cli.report import published, refuse_outside_a_checkout, write_files
 from reports.cli.selection import choose_cells
 from reports.cli.terminal import Terminal, print_table
 from reports.model.ending import BadInput
+from reports.model.page import Material
+from reports.pages.rendering import render_page
+from reports.pages.speed.page import page_of
+from reports.pages.speed.table import FILE, SpeedTable, as_csv, read
 from reports.run.installed import installed
 from reports.versions.catalogue import distributions, engines_named
 from reports.write.provenance import machine, versions
@@ -42,16 +49,27 @@ def bench(
     full: Annotated[bool, typer.Option("--full/--quick", help="`suite`: the full grid.")] = False,
     site: Annotated[Path, typer.Option(help="`site`: a folder that `crosscheck site` wrote.")] = SITE,
     device: DeviceName = None,
+    engine: Annotated[
+        list[str] | None, typer.Option("--engines", help="`peers`: only these engines (repeatable, or with commas).")
+    ] = None,
+    budget: Annotated[float, typer.Option(min=0.0, help="`peers`: longest run of an engine, in seconds of CPU.")] = 1.0,
+    results: Folder = FOLDER,
+    publish: Annotated[
+        bool, typer.Option("--publish", help="`peers`: write to the checkout's reports/results, too.")
+    ] = False,
 ) -> None:
     """Compare the CPU times of `run` and of bare loops. `bench suite [SCENES]` measures the CPU time of a grid by part,
-    method and scene. `bench judge` measures the judge and exact motions. `bench worlds [COUNTS]` measures steps per
-    second and errors of many four-bars in one program, on the device of `--device`. `bench answers` measures whole
-    commands. `bench site` measures the site."""
+    method and scene. `bench judge` measures the judge and exact motions. `bench peers [SCENES]` compares the judge with
+    other engines at equal errors, and writes the page `speed`; `--full` measures all scenes. `bench worlds [COUNTS]`
+    measures steps per second and errors of many four-bars in one program, on the device of `--device`. `bench answers`
+    measures whole commands. `bench site` measures the site."""
     match scene or []:
         case ["suite", *scenes]:
             _print_grid(scenes, full)
         case ["judge", *_]:
             _print_judge()
+        case ["peers", *names]:
+            _compare_peers(names, engine, full, budget, results, publish)
         case ["worlds", *counts]:
             _print_worlds(counts, device)
         case ["answers", *_]:
@@ -103,6 +121,34 @@ def _print_judge() -> None:
     total = ("all truths of the full grid", sum(seconds for _, seconds, _ in truths), "s")
     _print_rows("the judge: CPU time", [*measure_judge(), *truths[:MOST_LINES], total])
     _print_rows("the judge: many mechanisms, and many bodies", [*measure_batch(), *measure_trees()])
+
+
+def _compare_peers(
+    names: Sequence[str], engines: Sequence[str] | None, full: bool, budget: float, results: Path, publish: bool
+) -> None:
+    """Print the table of each error, and write its file, page and picture after each scene.
+
+    Rows of other scenes that the folder has from the same processor and versions are kept.
+    """
+    scenes = listed("bench peers", names, peers.SCENES) if names else tuple(peers.SCENES) if full else peers.QUICK
+    chosen = peers.PEERS if engines is None else listed("--engines", engines, peers.PEERS)
+    if publish:
+        refuse_outside_a_checkout()
+    refuse_file(results)
+    if not loading.installed():
+        raise BadInput("the judge is timed as compiled code: install numba, the extra 'fast'")
+    table, files = SpeedTable((), peers.facts(budget)).with_rows_of(read(results / FILE)), dict[str, str]()
+    for rows in peers.measure_peers(scenes, chosen, budget):
+        table = table.with_new(rows, tuple(peers.SCENES), peers.LINES)
+        files = {FILE: as_csv(table), **render_page(page_of(table), Material({}), "crosscheck bench peers")}
+        write_files({results / name: text for name, text in files.items()})
+    if publish:
+        if set(table.scenes) != set(peers.SCENES) or set(table.engines) < set(peers.PEERS):
+            raise BadInput("nothing is published, since the published table has all scenes and engines; use --full")
+        write_files({published() / name: text for name, text in files.items()})
+    for target in table.targets:
+        _print(f"CPU time over that of the judge, error at most {target:.0e} rad", table.header, table.lines(target))
+    print(f"{len(files)} files written to {results}")
 
 
 def _print_worlds(counts: Sequence[str], device: str | None) -> None:
