@@ -22,7 +22,6 @@ CHAPTER = FourBar(0.4, 0.4 * math.sqrt(2), 0.8 * math.sqrt(2), (1.2, 0.0))
 TURNED = FourBar(0.4, 1.1, 0.9, (-0.7, 0.9))
 WINDING = FourBar(1.0, 0.9, 1.1, (0.3, -0.4))
 WINDING_BACKWARD_GROUND = FourBar(2.0, 1.7, 1.5, (-0.6, 0.0))
-ROCKING = FourBar(0.9, 0.4, 0.8, (0.2, 0.8))
 
 
 def gap(linkage, theta, beta, phi):
