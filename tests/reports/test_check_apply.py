@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 import xml.etree.ElementTree as xml
+from types import SimpleNamespace
 
 import pytest
 
@@ -14,6 +15,7 @@ from engines.mujoco.reading.settings import rewritten
 from engines.pymunk.reading.script import BEGIN, END
 from engines.reading import Change
 from reports.check.request import CheckReport, CheckRequest, run_check
+from reports.check.settings import _is_dominated
 from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
 
@@ -104,6 +106,25 @@ def test_existing_options_are_replaced_and_missing_ones_are_inserted(source, wan
     change = Change("", 0.001, (), (("integrator", "RK4"), ("tied", False)))
     assert rewritten(source, change) == wanted
     assert rewritten(wanted, change) == wanted
+
+
+@pytest.mark.parametrize(
+    ("errors", "cost", "dominated"),
+    [
+        ((0.4, 0.2), 2.0, True),  # order 1 predicts 0.1, which is far above 0.01
+        ((0.4, 0.2), 0.5, False),  # cheaper than the setting with 0.01
+        ((0.2, 0.002), 2.0, False),
+        ((4.0, 0.2), 2.0, False),  # nothing follows from a saturated error
+        ((0.2,), 2.0, False),
+    ],
+)
+def test_a_setting_is_left_out_only_if_its_errors_predict_that_a_cheaper_setting_is_better(errors, cost, dominated):
+    def setting(error, dt):
+        return SimpleNamespace(error=error, cost=1.0, change=SimpleNamespace(dt=dt))
+
+    same_options = [setting(error, 2.0**-number) for number, error in enumerate(errors)]
+    table = [setting(0.01, 1.0), *same_options]
+    assert _is_dominated(table, same_options, 2.0 ** -len(errors), cost) == dominated  # pyright: ignore[reportArgumentType]
 
 
 def test_quick_tries_four_settings_and_all_tries_all_with_the_same_causes(tmp_path):

@@ -250,3 +250,9 @@ def test_elements_are_switched_off_by_their_kind_and_an_unknown_kind_is_refused(
     else:
         assert isinstance(answer, CheckReport)
         assert answer.fine
+
+
+def test_the_process_that_waits_for_a_check_imports_neither_numpy_nor_scipy():
+    program = "import sys, reports.cli.check, reports.check.rendering; print({'numpy', 'scipy'} & {*sys.modules})"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
