@@ -10,7 +10,6 @@ import typer
 
 from reports.cli.streams import written
 from reports.model.ending import FINE, STATUSES, BadInput
-from reports.run import worker
 
 # Command -> (module and function in `reports.cli`, first sentence of the help).
 COMMANDS = {
@@ -62,6 +61,8 @@ def invoke(arguments: Sequence[str]) -> int:
         with written():  # For --help.
             if words[0] in COMMANDS:
                 if words[0] in EARLY and "--help" not in words:
+                    from reports.run import worker  # Other commands start sooner without multiprocessing.
+
                     worker.start_early("numba")
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
             else:
