@@ -41,7 +41,7 @@ VISITED = """addEventListener('load', async () => {
   await pause(2000);
   for (const button of document.querySelectorAll('.set, .answers button:first-child')) {
     button.click();
-    await pause(700);
+    await pause(500);
   }
   console.log('visited');
 })"""

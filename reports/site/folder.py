@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -67,6 +68,11 @@ class Quiet(SimpleHTTPRequestHandler):
         except (ValueError, OSError):
             self.send_error(404, "There is no such file")
             return None
+
+    def handle(self) -> None:
+        """A browser that leaves a page closes its connections: no error."""
+        with suppress(ConnectionError):
+            super().handle()
 
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing."""

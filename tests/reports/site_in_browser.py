@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import threading
 from collections.abc import Sequence
@@ -23,8 +24,10 @@ from reports.site.lessons import LESSONS
 from reports.site.live.sliders import ENGINES, INTEGRATORS, Live
 from tests import RESULTS
 
+# SITE_BROWSER=firefox: the Firefox that `playwright install firefox` downloads. Otherwise it is the system's Chromium.
+KIND = os.environ.get("SITE_BROWSER", "chromium")
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
-if BROWSER is None:
+if BROWSER is None and KIND == "chromium":
     pytest.skip("no Chromium is installed: tests/tools/browser.sh installs it on Debian", allow_module_level=True)
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install '.[browser]'")
 pytest.importorskip("furo", reason="furo is not installed: pip install '.[site]'")
@@ -62,7 +65,8 @@ def address(files, tmp_path_factory):
 @pytest.fixture(scope="module")
 def chromium():
     with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"], timeout=LONGEST)
+        options = {"executable_path": BROWSER, "args": ["--no-sandbox"]} if KIND == "chromium" else {}
+        browser = getattr(started, KIND).launch(**options, timeout=LONGEST)
         yield browser
         browser.close()
 

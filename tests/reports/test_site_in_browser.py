@@ -409,6 +409,8 @@ def test_the_keyboard_parks_the_skate_in_five_moves(opened, lesson):
     text = page.inner_text(".parking .count")
     assert text.startswith("Parked: 5 moves; turned by 100.0° and slid by 0.900 m in total.")
     assert "moves it by -0.042 m ahead and 0.190 m to the left in 4 moves" in text  # 0.45 m and 25 degrees
+    linked = opened(f"lessons/{lesson}.html{page.evaluate('location.hash')}", viewport=TALL)
+    assert linked.inner_text(".parking .count") == text
 
 
 # The points of both paths in the coordinates of the drawing, and its scale [m of the paper for each m].
@@ -443,6 +445,8 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
     page.mouse.up()
     assert page.locator(".widget select").input_value() != "-1"
     assert "crosses itself" not in page.inner_text(".cam .count")
+    linked = opened(f"lessons/{lesson}.html{page.evaluate('location.hash')}", viewport=TALL)
+    assert linked.inner_text(".cam .count") == page.inner_text(".cam .count")
     page.get_by_label("the body turns").select_option("once")
     page.locator("[data-motion=Ellipse]").click()
     for kind in ("svg", "dxf"):
@@ -485,6 +489,7 @@ def test_every_page_loads_without_errors_and_fits_a_phone(files, opened, stride)
     for name in dict.fromkeys([*lessons, *names[::stride]]):
         page = opened(name, viewport=PHONE)
         assert page.title()
+        page.evaluate("document.querySelectorAll('main details').forEach((each) => { each.open = true; })")
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert wide <= 0, f"{name} is wider than a phone by {wide} px"
         page.context.close()
@@ -545,6 +550,9 @@ def test_the_keyboard_plays_a_motion_moves_the_time_and_switches_overlays(opened
     page.keyboard.press("Enter")
     page.wait_for_function("Number(document.querySelector('.time input').value) > 3")
     page.keyboard.press("Enter")
+    page.locator(".frame").focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function("location.hash.includes('start=')")  # the mechanism is dragged
 
 
 def test_texts_pictures_and_tables_are_shown_without_javascript(opened):

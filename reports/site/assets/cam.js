@@ -2,6 +2,7 @@
 /** Two shapes from a drawn motion: the reader draws the path of a point of a body that turns once, and both centrodes follow. */
 
 import { pointerIn } from "./motion.js";
+import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {import("./motion.js").Point} Point
  * @typedef {{cosines: Point[], sines: Point[]}} Series a closed path as a Fourier series: sum of cosines[k] cos(k t) + sines[k] sin(k t)
@@ -152,6 +153,15 @@ function begin(place) {
     make();
   }
 
+  const keep = remembered(place, ([turn, ...numbers]) => {
+    const points = numbers.flatMap((value, k) => (k % 2 ? [/** @type {Point} */ ([numbers[k - 1], value])] : []));
+    const half = points.length / 2;
+    turns.value = String(turn);
+    if (half < 2 || half % 1 || !turns.value) return;
+    series = { cosines: points.slice(0, half), sines: points.slice(half) };
+    make();
+  });
+  const stored = () => keep([Number(turns.value), ...series.cosines.flat(), ...series.sines.flat()]);
   const hand = (/** @type {PointerEvent} */ event) => pointerIn(drawing.firstElementChild, event);
   drawing.addEventListener("pointerdown", (event) => {
     drawing.setPointerCapture(event.pointerId);
@@ -168,11 +178,15 @@ function begin(place) {
   drawing.addEventListener("pointerup", () => {
     if (extent(drawn) > 0.1) take(seriesOf(drawn));
     else make();
+    stored();
   });
   for (const button of place.querySelectorAll("button")) {
     const { motion, file } = button.dataset;
     button.addEventListener("click", () => {
-      if (motion) take(MOTIONS[motion]);
+      if (motion) {
+        take(MOTIONS[motion]);
+        stored();
+      }
       if (!file) return;
       const text = file === "svg" ? asSvg(shapes) : asDxf(shapes);
       const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(new Blob([text])), download: `shapes.${file}` });
@@ -180,9 +194,12 @@ function begin(place) {
       setTimeout(() => URL.revokeObjectURL(link.href), 1000);
     });
   }
-  turns.addEventListener("change", make);
+  turns.addEventListener("change", () => {
+    make();
+    stored();
+  });
   angle.addEventListener("input", turnTo);
   make();
 }
 
-if (typeof document !== "undefined") for (const place of document.querySelectorAll(".widget.cam")) if (place instanceof HTMLElement) begin(place);
+beginAll("cam", begin);

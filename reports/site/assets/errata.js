@@ -2,6 +2,8 @@
 /** Formulas of the chapter as printed and as they must be, and the derivative of a known motion, which decides. The reader
  * chooses the numbers of the motion. tests/reports/test_exercises.py compares the numbers with those of the reference. */
 
+import { beginAll, remembered } from "./widget.js";
+
 /** @typedef {Record<string, number>} Numbers
  * @typedef {{printed: number[], right: number[], decides: number[]}} Versions
  * @typedef {(t: number) => number[]} Motion */
@@ -154,7 +156,7 @@ function fill(part, chosen) {
   }
 }
 
-/** @param {Element} place */
+/** @param {HTMLElement} place */
 function begin(place) {
   const part = /** @type {Element} */ (place.closest(".part"));
   const known = [...part.querySelectorAll("tbody tr")].flatMap((row) => ERRATA[row.firstElementChild?.textContent ?? ""] ?? []);
@@ -167,7 +169,13 @@ function begin(place) {
     const value = known.find(({ start }) => name in start)?.start[name];
     return `<label class="time">${words} <input type="range" name="${name}" min="${least}" max="${most}" step="any" value="${value}"> <output>${rounded(Number(value))}</output></label>`;
   }).join("")}</div>`;
-  for (const input of place.querySelectorAll("input")) {
+  const inputs = [...place.querySelectorAll("input")];
+  const keep = remembered(place, (numbers) => inputs.forEach((input, index) => {
+    input.value = String(numbers[index]);
+    input.dispatchEvent(new Event("input"));
+  }));
+  for (const input of inputs) {
+    input.addEventListener("change", () => keep(inputs.map(({ value }) => Number(value))));
     input.addEventListener("input", () => {
       chosen[input.name] = Number(input.value);
       /** @type {HTMLElement} */ (input.nextElementSibling).textContent = rounded(Number(input.value));
@@ -177,4 +185,4 @@ function begin(place) {
   fill(part, chosen);
 }
 
-if (typeof document !== "undefined") for (const place of document.querySelectorAll(".widget.errata")) begin(place);
+beginAll("errata", begin);

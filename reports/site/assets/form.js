@@ -96,11 +96,16 @@ export class Form {
   /** Let the reader set a slider by dragging a number in the text, or by the arrow keys. @param {HTMLElement} number */
   draggable(number) {
     const part = /** @type {HTMLElement|null} */ (number.closest(".part"));
-    const to = (/** @type {number} */ place) => {
+    const name = number.dataset.name ?? "";
+    /** Return the place of the slider, after the part's own scene is selected. */
+    const now = () => {
       const own = Number(part?.dataset.scene);
       if (own !== this.index) this.move(own, JSON.parse(part?.dataset.before ?? "{}"));
       this.mark(part);
-      const input = this.input(number.dataset.name ?? "");
+      return this.place(name);
+    };
+    const to = (/** @type {number} */ place) => {
+      const input = this.input(name);
       const wanted = String(Math.min(Math.max(place, 0), Number(input?.max)));
       if (!input || input.value === wanted) return;
       input.value = wanted;
@@ -108,7 +113,7 @@ export class Form {
     };
     let [from, begin] = [0, 0];
     number.addEventListener("pointerdown", (event) => {
-      [from, begin] = [event.clientX, this.place(number.dataset.name ?? "")];
+      [from, begin] = [event.clientX, now()];
       number.setPointerCapture(event.pointerId);
       event.preventDefault();
       number.focus();
@@ -120,7 +125,7 @@ export class Form {
       const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, Home: -1000, End: 1000 }[event.key];
       if (!by) return;
       event.preventDefault();
-      to(this.place(number.dataset.name ?? "") + by);
+      to(now() + by);
     });
   }
 
@@ -144,6 +149,8 @@ export class Form {
     const parts = [...this.root.querySelectorAll(".part")];
     const part = 1 + parts.findIndex((each) => each.classList.contains("shown"));
     const released = start ? [`start=${start.join(",")}`] : [];
+    const state = /** @type {HTMLElement|null} */ (this.root.querySelector(".part.shown .widget"))?.dataset.state;
+    if (state) released.push(`state=${state}`);
     return `${LINK}${[`part=${part}`, `scene=${this.index}`, ...released, ...this.shown().filter(({ value, defaultValue }) => value !== defaultValue).map(({ name, value }) => `${name}=${value}`)].join("&")}`;
   }
 
@@ -165,6 +172,9 @@ export class Form {
     const named = parts[Number(given.find(([name]) => name === "part")?.[1]) - 1];
     const part = ours.includes(named) ? named : ours[0];
     this.mark(part);
+    const widget = /** @type {HTMLElement|null} */ (part?.querySelector(".widget") ?? null);
+    if (widget) widget.dataset.state = all.find(([name]) => name === "state")?.[1] ?? "";
+    widget?.dispatchEvent(new Event("restore")); // a widget whose script comes later reads the state itself
     const start = (all.find(([name]) => name === "start")?.[1] ?? "").split(",").map(Number);
     return { part, start: start.length > 2 && start.every(Number.isFinite) ? start : null };
   }

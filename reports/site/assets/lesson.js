@@ -141,6 +141,7 @@ async function show(answer, play, ways) {
   find(".next").hidden = !motions.some((/** @type {any} */ { name, impulses }) => name === "munk" && impulses) || !answer.joints.length;
   find(".sweeps").hidden = true;
   figure.classList.add("can-grab");
+  find(".frame").tabIndex = answer.mechanism ? 0 : -1;
   if (play && !calm.matches) player.play(true);
   else if (play) {
     player.frame = answer.playback.stopAt;
@@ -257,6 +258,13 @@ function changed() {
   run(true);
 }
 
+/** Store the state of a widget in the address. @param {Event} event */
+function widgetChanged({ target }) {
+  const part = target instanceof Element ? target.closest(".part") : null;
+  if (part instanceof HTMLElement && !part.classList.contains("shown")) stageOf(part, {}, false);
+  history.replaceState(history.state, "", form.link(start));
+}
+
 /** Restore the state that the address stores. @returns {boolean} */
 function restored() {
   const found = form.restore(location.hash);
@@ -285,6 +293,7 @@ function begin() {
     });
   }
   form.onchange = changed;
+  root.addEventListener("stored", widgetChanged);
   /** @type {any} */
   let sweep = null;
   let at = 0;

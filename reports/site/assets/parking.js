@@ -2,6 +2,7 @@
 /** A skate that the reader turns and slides by hand to a place straight sideways, and the commutator of both moves. */
 
 import { pointerIn } from "./motion.js";
+import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {[number, number, number]} Pose x, y [m] and angle [rad] of the blade
  * @typedef {{turn: number, slide: number}} Move a turn [rad] about the blade or a slide [m] along it */
@@ -36,8 +37,9 @@ export function append(moves, move) {
   } else if (move.turn || move.slide) moves.push({ ...move });
 }
 
-const degrees = (/** @type {number} */ angle) => `${((angle * 180) / Math.PI + 1e-9).toFixed(1)}°`;
-const metres = (/** @type {number} */ length) => `${(length + 1e-9).toFixed(3)} m`;
+// The sum with 0 turns -0 into 0.
+const degrees = (/** @type {number} */ angle) => `${(Math.round((angle * 1800) / Math.PI) / 10 + 0).toFixed(1)}°`;
+const metres = (/** @type {number} */ length) => `${(Math.round(length * 1000) / 1000 + 0).toFixed(3)} m`;
 const BODY = "M-.24 -.09H.24V.09H-.24Z";
 
 /** @param {HTMLElement} place */
@@ -92,12 +94,15 @@ function begin(place) {
     show();
   }
 
+  const keep = remembered(place, (numbers) => follow(numbers.flatMap((turn, k) => (k % 2 ? [] : [{ turn, slide: numbers[k + 1] ?? 0 }]))));
+  const stored = () => keep(moves.flatMap(({ turn, slide }) => [turn, slide]));
   for (const button of place.querySelectorAll("button")) {
     const { turn, slide, shown } = button.dataset;
     button.type = "button";
     button.addEventListener("click", () => {
       if (shown === undefined) drive({ turn: Number(turn ?? 0) * STEP.turn, slide: Number(slide ?? 0) * STEP.slide });
       else follow(shown === "commutator" ? commutator(MOST.turn, MOST.ahead) : shown ? sidestep(GOAL, MOST.ahead) : []);
+      stored();
     });
   }
   drawing.addEventListener("keydown", (event) => {
@@ -105,6 +110,7 @@ function begin(place) {
     if (!by) return;
     event.preventDefault();
     drive({ turn: by[0] * STEP.turn, slide: by[1] * STEP.slide });
+    stored();
   });
   // A dragged nose follows the pointer: its motion along the blade slides the skate, its motion across turns the skate.
   drawing.addEventListener("pointerdown", (event) => {
@@ -121,7 +127,8 @@ function begin(place) {
     if (Math.abs(across) > 2 * Math.abs(along)) drive({ turn: Math.atan2(across, 0.24), slide: 0 });
     else if (Math.abs(along) > 2 * Math.abs(across)) drive({ turn: 0, slide: Math.max(-0.1, Math.min(0.1, along)) });
   });
+  drawing.addEventListener("pointerup", stored);
   show();
 }
 
-if (typeof document !== "undefined") for (const place of document.querySelectorAll(".widget.parking")) if (place instanceof HTMLElement) begin(place);
+beginAll("parking", begin);

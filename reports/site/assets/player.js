@@ -198,25 +198,40 @@ export class Player {
       frame_.setPointerCapture(event.pointerId);
       event.preventDefault();
     });
-    frame_.addEventListener("pointermove", (event) => {
-      if (!held || !this.take) return;
-      if (!this.take.mechanism) {
-        this.frame = this.nearest(this.take, held.body, held.point, hand(event));
-        this.show();
-        return;
+    /** @type {Float64Array|null} */
+    let pose = null;
+    const follow = (/** @type {{body: number, point: number[]}} */ { body, point }, /** @type {number[]} */ wanted) => {
+      if (this.take && !this.take.mechanism) {
+        this.frame = this.nearest(this.take, body, point, wanted);
+        return this.show();
       }
-      const pose = pull(held.body, held.point, hand(event));
-      if (!pose) return;
-      for (const group of this.groups) {
-        group.forEach((element, body) => put(element, ...poseAt(pose, group.length, 0, body)));
+      pose = pull(body, point, wanted);
+      for (const group of pose ? this.groups : []) {
+        group.forEach((element, body) => put(element, ...poseAt(/** @type {Float64Array} */ (pose), group.length, 0, body)));
       }
       this.stage.querySelector(".overlay")?.replaceChildren();
+    };
+    frame_.addEventListener("pointermove", (event) => {
+      if (held && this.take) follow(held, hand(event));
+    });
+    frame_.addEventListener("keydown", (event) => {
+      const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      const { take } = this;
+      if (!take?.mechanism || !by) return;
+      event.preventDefault();
+      this.stop();
+      // The far end of the last free bar, or its centre.
+      const joint = take.joints.findLast(({ first }) => first >= 0);
+      held = { body: joint?.first ?? take.bodies.length - 1, point: joint?.firstPoint ?? [0, 0] };
+      const now = poseAt(pose ?? take.exact.pose, take.bodies.length, pose ? 0 : this.frame, held.body);
+      follow(held, placed(now, held.point).map((value, axis) => value + 0.05 * take.size * by[axis]));
     });
     const end = () => {
       if (held && this.take?.mechanism) release();
-      held = null;
+      held = pose = null;
     };
     frame_.addEventListener("pointerup", end);
     frame_.addEventListener("pointercancel", end);
+    frame_.addEventListener("keyup", end);
   }
 }
