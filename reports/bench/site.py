@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+import io
 import json
 import shutil
 import threading
@@ -11,7 +13,7 @@ from typing import Any
 
 from reports.bench.times import Row
 from reports.model.ending import BadInput
-from reports.site.folder import MARKER, compressed_size, server
+from reports.site.folder import MARKER, Quiet, compressed_size, server
 
 VISITS = 3  # the least of these is printed
 LESSON, SCENE, STEP = "lessons/four_bar.html", 1, 4e-3  # page, index of the scene, and step [s]
@@ -48,6 +50,22 @@ VISITED = """addEventListener('load', async () => {
 VISIT_LIMIT = 120.0  # s
 
 
+class Compressing(Quiet):
+    """Sends compressed texts, as static hosts do."""
+
+    def send_head(self) -> Any:
+        path = Path(self.translate_path(self.path))
+        if path.suffix not in (".html", ".css", ".js", ".svg", ".json") or not path.is_file():
+            return super().send_head()
+        content = gzip.compress(path.read_bytes())
+        self.send_response(200)
+        for name, value in {"Content-Type": self.guess_type(path), "Content-Length": len(content)}.items():
+            self.send_header(name, str(value))
+        self.send_header("Content-Encoding", "gzip")
+        self.end_headers()
+        return io.BytesIO(content)
+
+
 def measure_site(folder: Path) -> Iterator[Row]:
     """Sizes of a site, loading times and longest tasks of its pages. Raises BadInput without a browser or a site."""
     if not (folder / MARKER).is_file():
@@ -61,7 +79,7 @@ def measure_site(folder: Path) -> Iterator[Row]:
         raise BadInput("no Chromium is installed: tests/tools/browser.sh installs it on Debian")
     contents = {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     yield from [("files", float(len(contents)), "1"), ("compressed", compressed_size(contents) / 1e6, "MB")]
-    running = server(folder, 0)
+    running = server(folder, 0, Compressing)
     threading.Thread(target=running.serve_forever, daemon=True).start()
     lessons = sorted(f"lessons/{path.name}" for path in folder.glob("lessons/*.html"))
     try:

@@ -78,10 +78,10 @@ class Quiet(SimpleHTTPRequestHandler):
         """Nothing."""
 
 
-def server(folder: Path, port: int) -> ThreadingHTTPServer:
+def server(folder: Path, port: int, handler: type[Quiet] = Quiet) -> ThreadingHTTPServer:
     """A server that only this machine can reach. Port 0 selects a free port. Raises BadInput if the port is in use."""
     try:
-        return ThreadingHTTPServer(("127.0.0.1", port), partial(Quiet, directory=str(folder)))
+        return ThreadingHTTPServer(("127.0.0.1", port), partial(handler, directory=str(folder)))
     except OSError as reason:
         raise BadInput(f"port {port} is not available ({reason.strerror or reason}): give another --port") from None
 

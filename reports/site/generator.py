@@ -183,6 +183,7 @@ def quote_section(app: Any, page: str, heading: str) -> str | None:
     for section in tree.findall(nodes.section):
         if section[0].astext() == heading:
             body = "".join(app.builder.render_partial(child)["fragment"] for child in section[1:])
+            body = body.replace("<img ", '<img loading="lazy" ')  # the section is closed at first
             body = re.sub(r' id="[^"]*"', "", body).replace('href="#', f'href="{page}.html#')
             return re.sub(r'href="(?!https?:|mailto:|\.\./)([^"]+)"', r'href="../results/\1"', body)
     return None

@@ -142,6 +142,7 @@ export class Form {
   /** Mark the experiment to which the picture belongs. @param {Element|null|undefined} part */
   mark(part) {
     for (const other of this.root.querySelectorAll(".part")) other.classList.toggle("shown", other === part);
+    this.root.classList.toggle("at-widget", Boolean(part?.querySelector(".widget")));
   }
 
   /** Return the link that stores the marked experiment, the sliders and the poses of release. @param {number[]|null} start */
