@@ -63,8 +63,14 @@ def test_experiments_and_their_texts_use_existing_controls(lesson):
             assert not guess.change or guess.claims, words
         # Every experiment that changes settings of an engine has a claim on the error.
         assert experiment.claims or not set(experiment.after) - {slider.field for slider in live.sliders}, part.heading
+
+
+@pytest.mark.parametrize("lesson", LESSONS, ids=lambda lesson: lesson.name)
+def test_numbers_to_drag_in_the_text_are_controls(lesson):
+    pytest.importorskip("mdit_py_plugins", reason="the extra site is not installed: pip install '.[site]'")
+    for part, experiment in zip(lesson.parts, lesson.experiments, strict=True):
         numbers = DRAGGED.findall(render_html(part.text + part.after))  # formulas have braces, too
-        assert set(numbers) <= set(live.controls()), part.heading
+        assert set(numbers) <= set(lesson.scene(experiment.scene).controls()), part.heading
 
 
 def test_polygons_have_the_corners_that_lessons_state():

@@ -28,8 +28,8 @@ LEFT_OUT_OF_CHECKOUT = (".*", "__pycache__", "build", "dist", "*.egg-info", "cro
 BUILD = "import sys; from setuptools import build_meta; build_meta.build_wheel(sys.argv[1])"
 THREE_STEPS = ("--every", "1", "--every", "3", "--every", "10")
 OUR_PACKAGES = ("engines", "reference", "reports")
-# Folders of results in the wheel: the gate's baseline, and data for the pages of versions and of the atlas.
-SHIPPED_RESULTS = ("errors", "timings", "versions", "atlas")
+# Results in the wheel: the gate's baseline, and data for the pages of versions, of the atlas and of speed.
+SHIPPED_RESULTS = ("errors", "timings", "versions", "atlas", "speed")
 OUR_MODULES = ("planar_crosscheck.py", "planar_crosscheck_pytest.py")
 # Every warning is an error.
 PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "error")
