@@ -12,7 +12,7 @@ results up to rounding. `run_batch` steps many mechanisms in one compiled loop.
 from engines.lagrange.batch import Batch, run_batch
 from engines.lagrange.engine import METHODS, VARIANTS, Integrator, Lagrange, Stabilisation
 from engines.lagrange.judge import JUDGE_CLAIM, TRUTH, Judge
-from engines.lagrange.sweep import Sweep
+from engines.lagrange.sweep import ParameterSweep
 
 __all__ = [
     "JUDGE_CLAIM",
@@ -23,7 +23,7 @@ __all__ = [
     "Integrator",
     "Judge",
     "Lagrange",
+    "ParameterSweep",
     "Stabilisation",
-    "Sweep",
     "run_batch",
 ]

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from engines.lagrange.compiled_model import CompiledModel
 from engines.lagrange.records import System
 from engines.lagrange.running import FIXED_STEP_TABLEAUS
-from engines.lagrange.sweep import Sweep
+from engines.lagrange.sweep import ParameterSweep
 from engines.lagrange.system import Key
 from reference.checks import Count, InvalidMechanism, Positive, require_room, validated
 from reference.mechanism import Mechanism
@@ -78,15 +78,15 @@ def run_batch(
 ) -> Batch:
     """Make `samples * every` steps of dt [s] with each mechanism, and record samples + 1 states.
 
-    engine: a `Lagrange`. mechanisms: a `Sweep`, or a sequence of `Mechanism`s. workers: number of threads, by default
-    one for each processor.
+    engine: a `Lagrange`. mechanisms: a `ParameterSweep`, or a sequence of `Mechanism`s. workers: number of threads, by
+    default one for each processor.
     Raises InvalidMechanism for a start that does not satisfy the joints, and for a sweep whose mechanism cannot move
     its start.
     """
     if not len(mechanisms):
         raise InvalidMechanism("run_batch: there are no mechanisms; give at least one")
     loop = _Loop(engine, dt, samples, every, workers or _processors())
-    if isinstance(mechanisms, Sweep):
+    if isinstance(mechanisms, ParameterSweep):
         return loop.run_sweep(mechanisms)
     return loop.run_list(mechanisms)
 
@@ -107,7 +107,7 @@ class _Loop:
     def t(self) -> Array:
         return np.arange(self.samples + 1, dtype=float) * (self.every * self.dt)
 
-    def run_sweep(self, sweep: Sweep) -> Batch:
+    def run_sweep(self, sweep: ParameterSweep) -> Batch:
         mechanism, count = sweep.mechanism, len(sweep)
         require_room("a batch", (count, self.samples + 1, *mechanism.pose.shape))
         starts = (
@@ -165,12 +165,12 @@ class _Loop:
         return model.system
 
     def _machine(self, system: System, group: _Group) -> MachineCode:
-        from engines.lagrange.lanes.program import MachineCode, Program  # imports numba
+        from engines.lagrange.lanes.program import MachineCode, VectorProgram  # imports numba
 
         varied = {key: slot for slot, key in enumerate(group.numbers)}
         unit = np.tile(group.first.pose_unit, len(group.first.bodies))
         tableau, projects = FIXED_STEP_TABLEAUS[self.engine.integrator], self.engine.stabilisation == "projection"
-        return MachineCode(Program(system, varied, unit, tableau, projects))
+        return MachineCode(VectorProgram(system, varied, unit, tableau, projects))
 
     def _close(self, machine: MachineCode, group: _Group, is_given: tuple[bool, bool]) -> None:
         """Move the starts onto the joints; raise InvalidMechanism if given starts move or joints do not close."""

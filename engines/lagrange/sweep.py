@@ -26,7 +26,7 @@ GRAVITY = "gravity"
 
 
 @dataclass(frozen=True)
-class Sweep(Valid):
+class ParameterSweep(Valid):
     """`count` copies of a mechanism with other numbers.
 
     numbers: arrays by "NAME.FIELD", for example "crank.mass" (count,) or "B.first_point" (count, 2), for fields of

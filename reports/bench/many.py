@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from engines import Engine, mujoco
-from engines.lagrange import Lagrange, Sweep, run_batch
+from engines.lagrange import Lagrange, ParameterSweep, run_batch
 from reference.joints import Body, Pin
 from reference.mechanism import Mechanism
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -27,9 +27,9 @@ def measure_batch(count: int = 20_000) -> list[Row]:
     ends = np.stack([lengths / 2, 0 * lengths], axis=1)
     numbers = {"A.second_point": -ends, "B.first_point": ends, "crank.mass": lengths, "crank.inertia": lengths**3 / 12}
     begin = time.process_time()
-    found = run_batch(engine, Sweep(mechanism, numbers), STEP, SAMPLES, STEPS_PER_SAMPLE, workers=1)
+    found = run_batch(engine, ParameterSweep(mechanism, numbers), STEP, SAMPLES, STEPS_PER_SAMPLE, workers=1)
     spent = time.process_time() - begin
-    sweep, difference, alone = Sweep(mechanism, numbers), 0.0, []
+    sweep, difference, alone = ParameterSweep(mechanism, numbers), 0.0, []
     for number in range(0, count, max(1, count // 20)):
         single = sweep.alone(number, found.pose[number, 0], found.twist[number, 0])
         run = engine.build(single, STEP)(SAMPLES, STEPS_PER_SAMPLE)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engines.lagrange import Batch, Lagrange, Sweep, batch, loading, run_batch
+from engines.lagrange import Batch, Lagrange, ParameterSweep, batch, loading, run_batch
 from reference.checks import InvalidMechanism
 from reference.joints import Drive, Pin, Roll
 from reference.mechanism import Mechanism
@@ -92,8 +92,8 @@ def test_a_sweep_moves_its_start_onto_the_joints_and_agrees_with_single_runs():
         f"{crank.name}.turning_rate": 3.0 * values,
         "gravity": np.outer(values, [1.0, -9.0]),
     }
-    found = run_batch(DOP853, Sweep(mechanism, numbers), 1e-2, 5)
-    sweep = Sweep(mechanism, numbers, found.pose[:, 0], found.twist[:, 0])
+    found = run_batch(DOP853, ParameterSweep(mechanism, numbers), 1e-2, 5)
+    sweep = ParameterSweep(mechanism, numbers, found.pose[:, 0], found.twist[:, 0])
     for number in range(count):
         alone = sweep.alone(number, found.pose[number, 0], found.twist[number, 0])
         assert alone.gravity == (values[number], -9.0 * values[number])
@@ -149,7 +149,7 @@ def test_mechanisms_of_different_sizes_and_adaptive_steps_have_arrays_of_their_o
 )
 def test_a_wrong_sweep_is_refused(numbers, states, words):
     with pytest.raises(InvalidMechanism, match=words):
-        Sweep(pendulum(), numbers, **states)
+        ParameterSweep(pendulum(), numbers, **states)
 
 
 def test_a_start_that_does_not_satisfy_the_joints_is_refused():
@@ -157,9 +157,9 @@ def test_a_start_that_does_not_satisfy_the_joints_is_refused():
     numbers = {f"{mechanism.bodies[0].name}.mass": [1.0, 2.0]}
     open_pose = np.array([mechanism.pose, mechanism.pose + 1e-3])
     with pytest.raises(InvalidMechanism, match="mechanism 1: its pose does not satisfy the joints"):
-        run_batch(DOP853, Sweep(mechanism, numbers, pose=open_pose), 1e-2, 1)
+        run_batch(DOP853, ParameterSweep(mechanism, numbers, pose=open_pose), 1e-2, 1)
     far = {f"{mechanism.joints[0].name}.second_point": [(0.0, 0.0), (50.0, 0.0)]}
     with pytest.raises(InvalidMechanism, match="mechanism 1: its joints do not close"):
-        run_batch(DOP853, Sweep(mechanism, far), 1e-2, 1)
+        run_batch(DOP853, ParameterSweep(mechanism, far), 1e-2, 1)
     with pytest.raises(InvalidMechanism, match="give `pose` and `twist`"):
-        run_batch(Lagrange(tolerance=1e-9), Sweep(mechanism, numbers), 1e-2, 1)
+        run_batch(Lagrange(tolerance=1e-9), ParameterSweep(mechanism, numbers), 1e-2, 1)

@@ -33,7 +33,7 @@ TABLES = ("bodies", "joints", "forces", "terms", "rows", "equations", "ends", "f
 LISTS = ("matrix", "inverse_pivots", "right", "reaction", "residual", "change")
 
 
-class Program:
+class VectorProgram:
     """The program of mechanisms that differ in the numbers `varied`, each with its place in the parameters.
 
     unit (coordinates,): the units in which a projection is converged. projects: whether to project after each step.
@@ -271,7 +271,7 @@ class Program:
 class MachineCode:
     """The compiled program; calls do not hold Python's lock."""
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: VectorProgram) -> None:
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
         module = llvm.parse_assembly(str(program.module))
