@@ -49,7 +49,9 @@ def run(
     engine: EngineName = None,
     variant: VariantName = None,
     settings: Settings = None,
-    full: Annotated[bool, typer.Option("--full/--quick", help="Fine steps and stability maps too.")] = False,
+    full: Annotated[
+        bool | None, typer.Option("--full/--quick", help="Fine steps and stability maps too; --quick is the default.")
+    ] = None,
     pages: Annotated[bool, typer.Option("--pages", help="Like --full, without rows that no page prints.")] = False,
     fresh: Annotated[bool, typer.Option("--fresh", help="Run again what is already stored.")] = False,
     every: Every = None,
@@ -66,8 +68,10 @@ def run(
     choose_device(device)
     if not 0 < limit < float("inf"):
         raise BadInput(f"--limit is {limit}; it must be a finite number of seconds greater than zero")
-    names, own, printed = scene or (), settings or (), pages and not full
-    chosen = select(names, engine, variant, own, full or pages, every or (), step or (), printed)
+    if pages and full is not None:
+        raise BadInput(f"--pages and --{'full' if full else 'quick'} are different choices of cells; give one of them")
+    names, own = scene or (), settings or ()
+    chosen = select(names, engine, variant, own, bool(full or pages), every or (), step or (), pages)
     items = chosen.items
     with telling(140, as_json, as_markdown) as console:
         with cluster.connect_cluster(scheduler) as crew, opened(results / STORE) as store:

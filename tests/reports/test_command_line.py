@@ -220,16 +220,18 @@ def test_each_exception_has_its_exit_status_and_its_message(error, status, line,
 
 
 @pytest.mark.parametrize(
-    ("words", "option"),
+    ("words", "refusal"),
     [
-        (("run", "free_four_bar", "--engine", "pymunk", "--engine=mujoco"), "--engine"),
-        (("run", "--full", "--quick"), "--full/--quick"),
-        (("check", "model.xml", "--step", "1", "--step", "2"), "--step"),
+        (("run", "free_four_bar", "--engine", "pymunk", "--engine=mujoco"), "--engine is given 2 times"),
+        (("run", "--full", "--quick"), "--full/--quick is given 2 times"),
+        (("run", "--pages", "--quick"), "--pages and --quick are different"),
+        (("run", "--pages", "--full"), "--pages and --full are different"),
+        (("check", "model.xml", "--step", "1", "--step", "2"), "--step is given 2 times"),
     ],
 )
-def test_a_repeated_option_that_takes_one_value_is_refused(words, option, capfd):
+def test_a_repeated_or_contradictory_option_is_refused(words, refusal, capfd):
     assert call(*words) == REFUSED
-    assert f"{option} is given 2 times" in one_line(capfd.readouterr().err)
+    assert refusal in one_line(capfd.readouterr().err)
 
 
 def ended(words, **streams):
