@@ -94,7 +94,7 @@ def run_settings_sweep(
             continue
         for_parts = plan.goal is None and same_options[:1] == settings[:1] and len(same_options) <= SMALLER_STEPS
         dear = plan.goal is None and (tenth := a_tenth(settings, tolerance)) is not None and cost > tenth.cost
-        dominated = plan.goal is None and _is_dominated(settings, same_options, change.dt, cost)
+        dominated = plan.goal is None and _is_dominated(settings, same_options, change.dt, cost, tolerance)
         if (dear or dominated or _has_plateaued(same_options)) and not (all_wanted or for_parts):
             continue
         run = model.run(samples, every, change)
@@ -105,18 +105,19 @@ def run_settings_sweep(
     return [replace(setting, front=setting in front) for setting in table]
 
 
-def _is_dominated(table: list[SettingRun], same_options: list[SettingRun], dt: float, cost: float) -> bool:
-    """Whether a setting in the table costs less than `cost` [s] and has a smaller error than is expected at a step dt.
-
-    The error at dt is extrapolated from the two smallest steps with the same options, unless an error is saturated.
-    """
+def _is_dominated(
+    table: list[SettingRun], same_options: list[SettingRun], dt: float, cost: float, tolerance: float
+) -> bool:
+    """Whether a setting within the tolerance costs less than `cost` [s], so that a setting of this cost is not advised,
+    and has a smaller error than is expected at a step dt. The error at dt is extrapolated from the two smallest steps
+    with the same options, unless an error is saturated."""
     last = sorted(same_options, key=lambda setting: setting.change.dt)[:2]
     if len(last) < 2 or not max(setting.error for setting in last) < SATURATED_ERROR:
         return False
     (small, error), (large, coarser) = ((setting.change.dt, setting.error) for setting in last)
     order = np.log(coarser / error) / np.log(large / small) if coarser > error > 0 else 0.0
     expected = error * (dt / small) ** order / IRREGULARITY
-    return any(setting.cost < cost and setting.error < expected for setting in table)
+    return any(setting.cost < cost and setting.error < min(expected, tolerance) for setting in table)
 
 
 def _quick_choice(changes: list[Change]) -> list[int]:

@@ -109,22 +109,29 @@ def test_existing_options_are_replaced_and_missing_ones_are_inserted(source, wan
 
 
 @pytest.mark.parametrize(
-    ("errors", "cost", "dominated"),
+    ("errors", "cost", "tolerance", "dominated"),
     [
-        ((0.4, 0.2), 2.0, True),  # order 1 predicts 0.1, which is far above 0.01
-        ((0.4, 0.2), 0.5, False),  # cheaper than the setting with 0.01
-        ((0.2, 0.002), 2.0, False),
-        ((4.0, 0.2), 2.0, False),  # nothing follows from a saturated error
-        ((0.2,), 2.0, False),
+        ((0.4, 0.2), 2.0, 0.02, True),  # order 1 predicts 0.1, which is far above 0.01
+        (
+            (0.4, 0.2),
+            2.0,
+            0.005,
+            False,
+        ),  # the setting with 0.01 can't be advised, and errors can fall faster than before
+        ((0.4, 0.2), 0.5, 0.02, False),  # cheaper than the setting with 0.01
+        ((0.2, 0.002), 2.0, 0.02, False),
+        ((4.0, 0.2), 2.0, 0.02, False),  # nothing follows from a saturated error
+        ((0.2,), 2.0, 0.02, False),
     ],
 )
-def test_a_setting_is_left_out_only_if_its_errors_predict_that_a_cheaper_setting_is_better(errors, cost, dominated):
+def test_a_setting_is_left_out_only_if_a_cheaper_one_is_advised_and_better(errors, cost, tolerance, dominated):
     def setting(error, dt):
         return SimpleNamespace(error=error, cost=1.0, change=SimpleNamespace(dt=dt))
 
     same_options = [setting(error, 2.0**-number) for number, error in enumerate(errors)]
     table = [setting(0.01, 1.0), *same_options]
-    assert _is_dominated(table, same_options, 2.0 ** -len(errors), cost) == dominated  # pyright: ignore[reportArgumentType]
+    found = _is_dominated(table, same_options, 2.0 ** -len(errors), cost, tolerance)  # pyright: ignore[reportArgumentType]
+    assert found == dominated
 
 
 def test_quick_tries_four_settings_and_all_tries_all_with_the_same_causes(tmp_path):
