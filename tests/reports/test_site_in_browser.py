@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import itertools
 import re
 from dataclasses import replace
 from typing import Any
@@ -565,6 +566,31 @@ def test_texts_pictures_and_tables_are_shown_without_javascript(opened):
     page = opened("results/four_bar.html", java_script_enabled=False)
     assert page.locator("table").count() > 3
     assert page.locator("img").first.evaluate("image => image.complete && image.naturalWidth > 0")
+
+
+@pytest.mark.parametrize("blocked", ["lesson.js", "motion.js"])
+def test_controls_are_hidden_if_scripts_are_blocked(chromium, address, blocked):
+    page = new_page(chromium)
+    page.route(f"**/{blocked}", lambda route: route.abort())
+    page.goto(f"{address}lessons/four_bar.html")
+    page.wait_for_selector("html:not(.scripts)", state="attached")
+    assert page.locator("button:visible:not(.scheme), input:visible, select:visible").count() == 0
+    assert page.get_by_text("The engines in this page need JavaScript").is_visible()
+    page.context.close()
+
+
+@pytest.mark.parametrize("scene", ["free_four_bar", "driven_slider_crank"])  # close methods; twelve decades
+def test_labels_of_a_chart_do_not_overlap_on_a_phone(opened, scene):
+    page = opened(f"results/rows.html#scene={scene}", viewport=PHONE)
+    page.wait_for_selector("html[data-ready]")
+    labels = page.locator("#chart :is([aria-label=text], [aria-label='y-axis tick label']) text")
+    boxes = [box for label in labels.all() if label.inner_html() and (box := label.bounding_box()) is not None]
+    assert len(boxes) > 8
+    assert max(box["x"] + box["width"] for box in boxes) <= PHONE["width"]
+    for a, b in itertools.combinations(boxes, 2):
+        aside = max(a["x"], b["x"]) - min(a["x"] + a["width"], b["x"] + b["width"])
+        above = max(a["y"], b["y"]) - min(a["y"] + a["height"], b["y"] + b["height"])
+        assert max(aside, above) > -0.01, (a, b)  # rounding of a label's place
 
 
 def test_tables_are_sorted_and_filtered_and_the_address_stores_the_choice(opened):

@@ -46,10 +46,10 @@ function draw(rows) {
   chart.replaceChildren(
     points.length
       ? Plot.plot({
-          width: Math.min(960, chart.clientWidth), height: 460, marginLeft: 60, grid: true,
+          width: Math.min(960, chart.clientWidth), height: 460, marginTop: 36, marginLeft: 60, grid: true,
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
           x: { type: "log", label: across, tickFormat: ".0e", ticks: 5 },
-          y: { type: "log", label: `error: ${error}`, tickFormat: ".0e" },
+          y: { type: "log", label: `error: ${error}`, tickFormat: ".0e", ticks: 5 },
           color: { legend: true, domain: engines, range: engines.map((name) => `var(--${looks[name].role})`) },
           marks: [
             ...[...new Set(points.map((row) => String(row.variant)))].map((variant) =>
@@ -68,6 +68,7 @@ function draw(rows) {
         })
       : "No row has both numbers.",
   );
+  separate([...chart.querySelectorAll("[aria-label=text] text")]);
   body.replaceChildren(
     ...kept.slice(0, MOST).map((row) => {
       const line = document.createElement("tr");
@@ -80,6 +81,22 @@ function draw(rows) {
   );
   const shown = kept.length > MOST ? `, the first ${MOST} of them in the table` : "";
   count.textContent = `${kept.length} rows${shown}.`;
+}
+
+/** Move labels into the chart, and above those that they would overlap. @param {Element[]} labels */
+function separate(labels) {
+  const { right: edge } = chart.getBoundingClientRect();
+  const boxes = labels.map((label) => ({ label, box: label.getBoundingClientRect() })).sort((a, b) => b.box.bottom - a.box.bottom);
+  /** @type {{left: number, right: number, top: number}[]} */
+  const placed = [];
+  for (const { label, box } of boxes) {
+    const aside = Math.min(0, edge - box.right);
+    const [left, right] = [box.left + aside, box.right + aside];
+    const near = placed.filter((other) => other.left < right && left < other.right && other.top < box.bottom);
+    const up = Math.min(0, ...near.map(({ top }) => top - box.bottom));
+    /** @type {SVGElement} */ (label).style.translate = `${aside}px ${up}px`;
+    placed.push({ left, right, top: box.top + up });
+  }
 }
 
 /** Return whether a row is of one of the three variants of an engine. @param {Row} row */

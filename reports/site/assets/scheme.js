@@ -1,6 +1,7 @@
 // The colour scheme that the reader or the system has selected. This script runs before the page is drawn.
 (() => {
   const root = document.documentElement;
+  root.classList.add("scripts"); // without this class, the style sheet hides controls
   /** Use the storage; without access to it the choice is valid for this page only. @param {(store: Storage) => void} use */
   const kept = (use) => {
     try {
