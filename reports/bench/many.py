@@ -13,8 +13,8 @@ from engines.lagrange import Lagrange, ParameterSweep, run_batch
 from reference.joints import Body, Pin
 from reference.mechanism import Mechanism
 from reference.scenes.four_bar.scenes import FreeFourBar
+from reports.bench.times import Row
 
-Row = tuple[str, float, str]  # name, value, unit
 STEP, SAMPLES, STEPS_PER_SAMPLE = 0.02, 10, 5  # a second in steps whose error is 1e-8 rad
 RK4 = {engine.variant: engine for engine in mujoco.METHODS}["RK4 alone"]
 TREE_STEP = 1e-4  # [s]

@@ -275,17 +275,7 @@ def facts(budget: float) -> dict[str, str]:
         "machine": machine(),
         "versions": row_versions(Lagrange(), *engines),
     }
-    return {**said, "budget": f"{budget:g}", "judge start": f"{judge_start():.3g}", **measure_roofline()}
-
-
-def judge_start() -> float:
-    """The CPU time [s] of a run of the judge with one step, minus that of a further step."""
-    mechanism = FreeFourBar().mechanism()
-
-    def least(steps: int) -> float:
-        return min(Lagrange().build(mechanism, 1e-3)(1, steps).stepping for _ in range(3 * TURNS))
-
-    return least(1) - (least(101) - least(1)) / 100
+    return {**said, "budget": f"{budget:g}", **measure_roofline()}
 
 
 def in_cpp_alone(scene: Scene, rungs: Iterable[Rung]) -> list[Rung]:

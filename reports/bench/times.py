@@ -109,7 +109,7 @@ def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -
     model = CompiledModel.of(mechanism) if Lagrange().in_machine_code else None
     if model is None:
         raise BadInput("the judge is timed as compiled code: install numba, the extra 'fast'")
-    rows = [("four-bar: one evaluation", 1e6 * _least(lambda: _measure_evaluation(model), turns), "us")]
+    rows = [("four-bar: one evaluation", 1e6 * least(lambda: _measure_evaluation(model), turns), "us")]
     # At order 8 the error is 1e-12 rad with steps of 5e-3 s. With steps of 1e-2 s the error is larger.
     for engine, every in ((Lagrange("rk4"), 10), (Lagrange(), 1), (Lagrange(), 2), (Lagrange(tolerance=1e-12), 1)):
         step = f"step {1e-2 / every:g} s" if engine.tolerance is None else "samples 0.01 s apart"
@@ -120,10 +120,10 @@ def measure_judge(links: Sequence[int] = (100, 300, 1000), turns: int = TURNS) -
         def step_it(engine: Engine = engine, every: int = every) -> float:
             return engine.build(mechanism, 1e-2 / every)(100, every).stepping
 
-        rows += [(name, 1e3 * _least(step_it, turns), "ms"), (f"{name}: its error", error, "rad")]
+        rows += [(name, 1e3 * least(step_it, turns), "ms"), (f"{name}: its error", error, "rad")]
     for count in links:
         chain = LongPendulum(links=count, duration=0.2).mechanism()
-        seconds = _least(lambda chain=chain: Lagrange("rk4").build(chain, 1e-4)(1, 50).stepping, turns) / 50
+        seconds = least(lambda chain=chain: Lagrange("rk4").build(chain, 1e-4)(1, 50).stepping, turns) / 50
         rows.append((f"chain of {count} links: a step by rk4 projection", 1e3 * seconds, "ms"))
     return rows
 
@@ -178,7 +178,8 @@ def _measure_evaluation(model: CompiledModel, count: int = 2000) -> float:
     return (time.process_time() - begin) / (count + 1)
 
 
-def _least(seconds: Callable[[], float], turns: int) -> float:
+def least(seconds: Callable[[], float], turns: int) -> float:
+    """The least of several results, after a first call that loads code and data into caches."""
     seconds()
     return min(seconds() for _ in range(turns))
 

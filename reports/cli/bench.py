@@ -137,7 +137,8 @@ def _compare_peers(
     refuse_file(results)
     if not loading.installed():
         raise BadInput("the judge is timed as compiled code: install numba, the extra 'fast'")
-    table, files = SpeedTable((), peers.facts(budget)).with_rows_of(read(results / FILE)), dict[str, str]()
+    stored, files = read(results / FILE), dict[str, str]()
+    table = SpeedTable((), peers.facts(budget)).with_rows_of(stored)
     for rows in peers.measure_peers(scenes, chosen, budget):
         table = table.with_new(rows, tuple(peers.SCENES), peers.LINES)
         files = {FILE: as_csv(table), **render_page(page_of(table), Material({}), "crosscheck bench peers")}

@@ -16,7 +16,7 @@ from reports.cli import bench as command
 from reports.model.ending import BadInput
 from reports.model.page import Material
 from reports.pages.rendering import render_page
-from reports.pages.speed.page import NO_REASON, PAGE, page_of
+from reports.pages.speed.page import NO_REASON, PAGE, page_of, spread
 from reports.pages.speed.table import (
     ABSENT,
     FILE,
@@ -88,7 +88,7 @@ def test_the_rows_of_a_scene_have_ratios_lower_bounds_refusals_and_missing_engin
     missed = at(rows, "coarse", 1e-9)
     assert (missed.outcome, missed.words, missed.seconds) == (UNREACHED, "> 8", 0.4)
     assert missed.error == pytest.approx(1e-5)
-    assert [at(rows, name, 1e-3).words for name in ("bolts", "absent")] == [UNSUPPORTED, ABSENT]
+    assert [at(rows, name, 1e-3).words for name in ("bolts", "absent")] == ["not built", ABSENT]
     assert at(rows, peers.PINOCCHIO_ALONE, 1e-3).note == "it has no pins"
     assert at(rows, JUDGE, 1e-9).seconds == 0.05
 
@@ -188,13 +188,15 @@ ROWS = (
 FACTS = {"date": "2026-11-28", "machine": "a machine", "versions": "numpy 2, scipy: 1", "budget": "2"}
 
 
-def test_a_stored_table_is_read_as_it_was_and_another_file_is_refused():
+def test_a_stored_table_is_read_as_it_was_and_another_file_is_refused(tmp_path):
     table = SpeedTable(ROWS, FACTS)
     assert as_csv(of_csv(as_csv(table))) == as_csv(table)
     assert of_csv(as_csv(table)).facts == table.facts
     assert of_csv(as_csv(table)).rows[:3] == ROWS[:3]
-    with pytest.raises(ValueError, match=r"not a file speed\.csv"):
-        of_csv("scene,engine\nfour-bar,mujoco\n")
+    for content in (b"scene,engine\nfour-bar,mujoco\n", b"\xff\xfe"):
+        (tmp_path / FILE).write_bytes(content)
+        with pytest.raises(BadInput, match=r"speed\.csv: "):
+            read(tmp_path / FILE)
 
 
 def test_new_rows_replace_those_of_their_scene_and_engine_and_rows_of_another_machine_are_not_kept():
@@ -210,9 +212,17 @@ def test_new_rows_replace_those_of_their_scene_and_engine_and_rows_of_another_ma
 
 def test_the_page_of_a_table_has_its_ratios_and_reasons_and_says_if_nothing_was_run():
     text = render_page(page_of(SpeedTable(ROWS, FACTS)), Material({}), "crosscheck bench peers")["speed.md"]
-    assert "| four-bar | 0.1 | 3 | > 1000 | no such joint |" in text
+    assert "| four-bar | 0.1 | 3 | > 1000 | not built |" in text
     assert "| exudyn | four-bar | it has no pins, and no slots |" in text
+    assert "by a factor of 1 in the median and of 1 at" in text
+    assert "| mujoco | four-bar at 1e-03: 3 | " in text
     assert "Nothing was run yet" in render_page(page_of(SpeedTable(())), Material({}), "")["speed.md"]
+
+
+def test_the_spread_of_the_judges_time_is_that_between_rows_of_one_cell():
+    rows = [replace(ROWS[0], judge_seconds=seconds) for seconds in (1e-4, 3e-4)]
+    rows += [replace(ROWS[0], target=1e-6), replace(ROWS[2], judge_seconds=1.0)]
+    assert spread(SpeedTable(tuple(rows))) == pytest.approx((2.0, 3.0))
 
 
 def test_the_published_page_explains_each_cell_in_which_the_judge_misses_its_aim():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -38,20 +39,14 @@ REASONS: tuple[Reason, ...] = (
         (),
         (),
         "it has one equation and no joint forces, where each evaluation of the judge solves eight rows for nine "
-        "coordinates; the call of the judge's compiled code from Python costs as much as this whole solution",
-    ),
-    (
-        "pinocchio, C++ alone",
-        ("andrews",),
-        (1e-6, 1e-9),
-        "a lower bound, since our Python code for the spring uses up the budget at larger steps than the error needs",
+        "coordinates; the fixed cost of each run of the judge is about as large as this whole solution",
     ),
     (
         "pinocchio, C++ alone",
         (),
         (),
         "only evaluations are counted, in the coordinates of a tree; the judge's time is that of whole steps with "
-        "projections, and of the call from Python",
+        "projections, and of the fixed cost of a run",
     ),
     (
         "mujoco",
@@ -61,10 +56,16 @@ REASONS: tuple[Reason, ...] = (
     ),
     (
         "",
+        ("sleigh", "car-and-trailer", "two-feet"),
+        (1e-3,),
+        "the engine needs ten or twenty steps of order 4, and more than half of the judge's time is its fixed cost",
+    ),
+    (
+        "",
         (),
         (1e-3,),
-        "at this error some tens of steps of order 4 in the coordinates of a tree are enough, so a high order saves "
-        "little; the judge has three coordinates for each body, and a call from Python in each run",
+        "ten to forty steps of order 4 in the coordinates of a tree are enough, so a high order saves little; the "
+        "judge has three coordinates for each body, and the fixed cost of a run",
     ),
 )
 NO_REASON = "not explained yet"
@@ -79,10 +80,22 @@ def reason_of(row: SpeedRow) -> str:
 
 
 def behind(table: SpeedTable) -> list[list[str]]:
-    """The scene, the engine, the error, the ratio and the reason of each cell in which the judge misses its aim."""
-    return [
-        [row.scene, row.engine, f"{row.target:.0e}", row.words, reason_of(row)] for row in table.rows if row.is_behind
-    ]
+    """The engine, the cells in which the judge misses its aim with their ratios, and the reason."""
+    cells: dict[tuple[str, str], list[str]] = {}
+    for row in table.rows:
+        if row.is_behind:
+            cells.setdefault((row.engine, reason_of(row)), []).append(f"{row.scene} at {row.target:.0e}: {row.words}")
+    return [[engine, "; ".join(found), reason] for (engine, reason), found in cells.items()]
+
+
+def spread(table: SpeedTable) -> tuple[float, float]:
+    """The judge's longest time over its shortest one, between the rows of a scene and an error: median and largest."""
+    times: dict[tuple[str, float], list[float]] = {}
+    for row in table.rows:
+        if row.outcome == REACHED and row.judge_seconds > 0:
+            times.setdefault((row.scene, row.target), []).append(row.judge_seconds)
+    ratios = [max(found) / min(found) for found in times.values()] or [math.nan]
+    return statistics.median(ratios), max(ratios)
 
 
 def unreached(table: SpeedTable) -> list[list[str]]:
@@ -141,7 +154,7 @@ def context_of(table: SpeedTable) -> Mapping[str, Any]:
     return {
         "missing": not table.rows,
         "tables": [(f"{target:.0e}", markdown(table.header, table.lines(target))) for target in table.targets],
-        "behind": markdown(("scene", "engine", "error [rad]", "ratio", "reason"), behind(table), left=5),
+        "behind": markdown(("engine", "scene, error [rad] and ratio", "reason"), behind(table), left=3),
         "is_behind": bool(behind(table)),
         "unreached": markdown(
             ("scene", "engine", "error [rad]", "best", "its error", "note"), unreached(table), left=6
@@ -150,6 +163,7 @@ def context_of(table: SpeedTable) -> Mapping[str, Any]:
         "settings": markdown(*settings(table), left=2 + len(table.engines)),
         "facts": table.facts,
         "wanted": (WANTED_AHEAD, WANTED_WITHIN),
+        "spread": [number(ratio) for ratio in spread(table)],
         "start": table.number("judge start"),
         "per_second": [number(1e3 * row.seconds) for row in judged if row is not None],
         "roofline": {name: roofline(table, name) for name in ("four-bar", "chain")},

@@ -10,6 +10,7 @@ from dataclasses import astuple, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+from reports.model.ending import BadInput
 from reports.write.csv_files import no_formula, read_lines
 from reports.write.tables import DASH, number
 
@@ -17,6 +18,7 @@ FILE = "speed.csv"
 RESULTS = Path(__file__).parents[2] / "results"
 JUDGE = "lagrange"
 ONE_FREEDOM = "one coordinate"
+# UNSUPPORTED is a word of stored files. A page says that the adapter does not build the scene.
 REACHED, UNREACHED, UNSUPPORTED, ABSENT = "reached", "not reached", "no such joint", "not installed"
 SAME_FACTS = ("machine", "versions", "budget")  # of rows that may be in one table
 NOT_MEASURED = "not measured"  # the fact with the scenes that are missing
@@ -56,7 +58,7 @@ class SpeedRow:
     def words(self) -> str:
         """The ratio as text, such as '12', or '> 300' if the engine does not reach the error within its budget."""
         if self.outcome in (UNSUPPORTED, ABSENT):
-            return self.outcome
+            return "not built" if self.outcome == UNSUPPORTED else ABSENT
         if math.isnan(self.ratio):
             return DASH
         return ("> " if self.outcome == UNREACHED else "") + number(self.ratio)
@@ -156,5 +158,8 @@ def of_csv(text: str) -> SpeedTable:
 
 
 def read(path: Path = RESULTS / FILE) -> SpeedTable:
-    """The stored table, which is empty if the file does not exist."""
-    return of_csv(path.read_text(encoding="utf-8")) if path.is_file() else SpeedTable(())
+    """The stored table, which is empty if the file does not exist. Raises BadInput for another file."""
+    try:
+        return of_csv(path.read_text(encoding="utf-8")) if path.is_file() else SpeedTable(())
+    except ValueError as reason:  # also for bytes that are no text
+        raise BadInput(f"{path}: {reason}") from None
