@@ -1,7 +1,7 @@
 // @ts-check
 /** Two shapes from a drawn motion: the reader draws the path of a point of a body that turns once, and both centrodes follow. */
 
-import { pointerIn } from "./motion.js";
+import { placed, pointerIn, put } from "./motion.js";
 import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {import("./motion.js").Point} Point
@@ -47,7 +47,7 @@ export function shapesOf({ cosines, sines }, turn, points = POINTS) {
     const [rx, ry, angle] = [-vy / turn, vx / turn, turn * t];
     out.path.push([x, y]);
     out.space.push([x + rx, y + ry]);
-    out.body.push([Math.cos(angle) * rx + Math.sin(angle) * ry, Math.cos(angle) * ry - Math.sin(angle) * rx]);
+    out.body.push(placed([0, 0, -angle], [rx, ry]));
     out.angles.push(angle);
   }
   return out;
@@ -130,8 +130,8 @@ function begin(place) {
 
   function turnTo() {
     const index = Math.round((Number(angle.value) / 360) * POINTS);
-    find(".moving").setAttribute("transform", `translate(${shapes.path[index].join(" ")}) rotate(${(shapes.angles[index] * 180) / Math.PI})`);
-    for (const [axis, name] of [[0, "cx"], [1, "cy"]]) find(".touch").setAttribute(String(name), String(shapes.space[index][Number(axis)]));
+    put(find(".moving"), ...shapes.path[index], shapes.angles[index]);
+    put(find(".touch"), ...shapes.space[index], 0);
   }
 
   function make() {

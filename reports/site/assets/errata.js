@@ -2,6 +2,7 @@
 /** Formulas of the chapter as printed and as they must be, and the derivative of a known motion, which decides. The reader
  * chooses the numbers of the motion. tests/reports/test_exercises.py compares the numbers with those of the reference. */
 
+import { placed } from "./motion.js";
 import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {Record<string, number>} Numbers
@@ -10,22 +11,22 @@ import { beginAll, remembered } from "./widget.js";
 
 const SPACING = 0.02; // of the points of a difference [s]; with it, differences of order eight have an error of 1e-12
 const WEIGHTS = [[3, -32, 168, -672, 0, 672, -168, 32, -3].map((each) => each / 840), [-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9].map((each) => each / 5040)];
-const [L1, L2, L3, L4] = [0.4, 0.4 * Math.SQRT2, 0.8 * Math.SQRT2, 1.2]; // sample 18.15 [m]
+export const [L1, L2, L3, L4] = [0.4, 0.4 * Math.SQRT2, 0.8 * Math.SQRT2, 1.2]; // sample 18.15 [m]
 
 /** Return the first or the second derivative at t = 0. @param {Motion} motion @param {number} [order] */
 const derivative = (motion, order = 1) => motion(0).map((_, axis) =>
   WEIGHTS[order - 1].reduce((sum, weight, k) => sum + weight * motion((k - 4) * SPACING)[axis], 0) / SPACING ** order);
 const across = (/** @type {number[]} */ [x, y]) => [-y, x];
-const scaled = (/** @type {number} */ by, /** @type {number[]} */ vector) => vector.map((each) => by * each);
-const sum = (/** @type {number[][]} */ ...vectors) => vectors[0].map((_, axis) => vectors.reduce((total, vector) => total + vector[axis], 0));
-const direction = (/** @type {number} */ angle) => [Math.cos(angle), Math.sin(angle)];
+export const scaled = (/** @type {number} */ by, /** @type {number[]} */ vector) => vector.map((each) => by * each);
+export const sum = (/** @type {number[][]} */ ...vectors) => vectors[0].map((_, axis) => vectors.reduce((total, vector) => total + vector[axis], 0));
+export const direction = (/** @type {number} */ angle) => [Math.cos(angle), Math.sin(angle)];
 const angleAt = (/** @type {Numbers} */ { angle, rate, acceleration }, /** @type {number} */ t) => angle + rate * t + (acceleration * t * t) / 2;
 
 /** A circle of radius `rolling` rolls on a circle of radius `fixed`: the place of the body's point `at` [m]. @param {Numbers} numbers @param {number[]} at @returns {Motion} */
-const onCircle = (numbers, [p, q]) => (t) => {
+const onCircle = (numbers, at) => (t) => {
   const angle = angleAt(numbers, t);
-  const [c, s] = direction(angle);
-  return sum(scaled(numbers.fixed + numbers.rolling, direction((angle * numbers.rolling) / (numbers.fixed + numbers.rolling))), [c * p - s * q, s * p + c * q]);
+  const [x, y] = scaled(numbers.fixed + numbers.rolling, direction((angle * numbers.rolling) / (numbers.fixed + numbers.rolling)));
+  return placed([x, y, angle], at);
 };
 
 /** Return the acceleration of a bar's end in problem 18.5.2: of three formulas with a slip, of the right one and of the motion. @param {Numbers} numbers */
@@ -36,6 +37,17 @@ function bar(numbers) {
   const of = (/** @type {number} */ first) => scaled(length, [first * c - rate * rate * s, first * s + rate * rate * c]);
   return { first: of(rate), second: [of(rate)[0], of(acceleration)[1]],
     third: [of(acceleration)[0], length * (rate * rate * s + acceleration * c)], right: of(acceleration), decides: derivative(end, 2) };
+}
+
+/** Return the place between `low` and `high` at which a function changes its sign. @param {(place: number) => number} of @param {number} low @param {number} high */
+export function zero(of, low, high) {
+  const positive = of(low) > 0;
+  for (let round = 0; round < 60; round++) {
+    const middle = (low + high) / 2;
+    if (of(middle) > 0 === positive) low = middle;
+    else high = middle;
+  }
+  return low;
 }
 
 /** Return beta' and phi' of (18.70) and (18.71) for a unit rate of the crank. @param {number} theta @param {number[]} angles */
@@ -52,7 +64,7 @@ function integrated(theta, steps) {
 }
 
 /** Return beta and phi in closed form; side: 1 if C is on the left of the line from B to D, else -1. @param {number} theta @param {number} side */
-function closedForm(theta, side) {
+export function closedForm(theta, side) {
   const [bx, by] = scaled(L1, direction(theta));
   const d = Math.hypot(L4 - bx, by);
   const beta = Math.atan2(-by, L4 - bx) + side * Math.acos((d * d + L2 * L2 - L3 * L3) / (2 * d * L2));
@@ -67,14 +79,10 @@ function assemblies(theta) {
   const miss = (/** @type {number} */ beta) => Math.hypot(L1 * Math.cos(theta) + L2 * Math.cos(beta) - L4, L1 * Math.sin(theta) + L2 * Math.sin(beta)) - L3;
   const found = [];
   for (let k = 0; k < 360; k++) {
-    let [low, high] = [k, k + 1].map((degree) => ((degree - 180) * Math.PI) / 180);
+    const [low, high] = [k, k + 1].map((degree) => ((degree - 180) * Math.PI) / 180);
     if (miss(low) > 0 === miss(high) > 0) continue;
-    for (let round = 0; round < 50; round++) {
-      const middle = (low + high) / 2;
-      if (miss(middle) > 0 === miss(low) > 0) low = middle;
-      else high = middle;
-    }
-    found.push([low, phiOf(theta, low)]);
+    const beta = zero(miss, low, high);
+    found.push([beta, phiOf(theta, beta)]);
   }
   const toD = Math.atan2(-L1 * Math.sin(theta), L4 - L1 * Math.cos(theta));
   return found.sort(([a], [b]) => Math.sin(b - toD) - Math.sin(a - toD));
@@ -97,8 +105,7 @@ export const ERRATA = {
     return { printed: scaled(fixed * at, tangent), right: scaled(rate / (1 / fixed + 1 / rolling), tangent), decides: derivative(contact) };
   } },
   2: { start: ROLLING, of(numbers) {
-    const [c, s] = direction(numbers.angle);
-    const speed = (/** @type {number[]} */ [x, y]) => derivative(onCircle(numbers, [c * x + s * y, c * y - s * x]));
+    const speed = (/** @type {number[]} */ arm) => derivative(onCircle(numbers, placed([0, 0, -numbers.angle], arm)));
     const centre = onCircle(numbers, [0, 0])(0);
     return { printed: speed(scaled(-1, centre)), right: speed(scaled(1 / numbers.rate, across(speed([0, 0])))), decides: [0, 0] };
   } },
@@ -124,13 +131,11 @@ export const ERRATA = {
 /** Return the acceleration of G with a given term for the turning of v_C, with the right term, and of the motion. @param {Numbers} numbers @param {number[]} term @returns {Versions} */
 function skate(numbers, term) {
   const { angle, rate, acceleration, speed, push, ahead, left } = numbers;
-  const arm = (/** @type {number[]} */ along) => sum(scaled(ahead, along), scaled(left, across(along)));
-  const velocity = (/** @type {number} */ t) => {
-    const along = direction(angleAt(numbers, t));
-    return sum(scaled(speed + push * t, along), scaled(rate + acceleration * t, across(arm(along))));
-  };
+  const arm = (/** @type {number} */ heading) => placed([0, 0, heading], [ahead, left]);
+  const velocity = (/** @type {number} */ t) =>
+    sum(scaled(speed + push * t, direction(angleAt(numbers, t))), scaled(rate + acceleration * t, across(arm(angleAt(numbers, t)))));
   const along = direction(angle);
-  const rest = sum(scaled(push, along), scaled(acceleration, across(arm(along))), scaled(-rate * rate, arm(along)));
+  const rest = sum(scaled(push, along), scaled(acceleration, across(arm(angle))), scaled(-rate * rate, arm(angle)));
   return { printed: sum(rest, term), right: sum(rest, scaled(speed * rate, across(along))), decides: derivative(velocity) };
 }
 

@@ -2,7 +2,7 @@
 /** Exercises: the page computes each answer from equations, and compares it with the reader's. */
 
 import { MOTIONS, extent, shapesOf } from "./cam.js";
-import { ERRATA } from "./errata.js";
+import { ERRATA, L1, L2, L3, L4, closedForm, direction, scaled, sum, zero } from "./errata.js";
 import { freedoms, motion, rates } from "./exact.js";
 import { instantCentre, placed } from "./motion.js";
 import { commutator, moved, sidestep } from "./parking.js";
@@ -33,35 +33,21 @@ function linkage(points, bars, fixed) {
   return { joints, pose, inertia: pose.map(() => 1), gravity: [0, 0], twist: pose.map(() => 0), drives: [] };
 }
 
-/** Return the third corner of a triangle on the left of the line from `a` to `b`. @param {Point} a @param {Point} b
- * @param {number} fromA @param {number} fromB @returns {Point} */
-function corner([x, y], [u, v], fromA, fromB) {
-  const d = Math.hypot(u - x, v - y);
-  const along = (d * d + fromA * fromA - fromB * fromB) / (2 * d);
-  const aside = Math.sqrt(fromA * fromA - along * along);
-  return [x + (along * (u - x) - aside * (v - y)) / d, y + (along * (v - y) + aside * (u - x)) / d];
-}
-
 /** @param {number} degrees */
 const rad = (degrees) => (degrees * Math.PI) / 180;
 
 /** Return a double pendulum of links of 1 m at angles [degrees] from the downward vertical. @param {number} one @param {number} two */
 function pendulum(one, two) {
-  const [a, b] = [rad(one - 90), rad(two - 90)];
-  /** @type {Point} */
-  const A = [Math.cos(a), Math.sin(a)];
-  return linkage({ O: [0, 0], A, B: [A[0] + Math.cos(b), A[1] + Math.sin(b)] }, ["OA", "AB"], "O");
+  const A = /** @type {Point} */ (direction(rad(one - 90)));
+  const B = /** @type {Point} */ (sum(A, direction(rad(two - 90))));
+  return linkage({ O: [0, 0], A, B }, ["OA", "AB"], "O");
 }
 
-/** Return the sample's four-bar at a crank angle [degrees], on the side of C that sample 18.15 draws. @param {number} angle @param {boolean} [mirrored] */
-function fourBar(angle, mirrored = false) {
-  /** @type {Point[]} */
-  const [A, D] = [[0, 0], [1.2, 0]];
-  /** @type {Point} */
-  const B = [0.4 * Math.cos(rad(angle)), 0.4 * Math.sin(rad(angle))];
-  const [near, far] = [0.4 * Math.SQRT2, 0.8 * Math.SQRT2];
-  const C = mirrored ? corner(D, B, far, near) : corner(B, D, near, far);
-  return linkage({ A, B, C, D }, ["AB", "BC", "DC"], "AD");
+/** Return the sample's four-bar at a crank angle [degrees], on the side of C that sample 18.15 draws. @param {number} angle @param {number} [side] -1 for the other side */
+function fourBar(angle, side = 1) {
+  const B = /** @type {Point} */ (scaled(L1, direction(rad(angle))));
+  const C = /** @type {Point} */ (sum(B, scaled(L2, direction(closedForm(rad(angle), side)[0]))));
+  return linkage({ A: [0, 0], B, C, D: [L4, 0] }, ["AB", "BC", "DC"], "AD");
 }
 
 /** Return the velocity of a body's point. @param {ReturnType<typeof linkage>} mechanism @param {number[]} twist @param {number} body @param {number[]} point */
@@ -73,7 +59,7 @@ function velocity({ pose }, twist, body, point) {
 
 /** Return a slider-crank with a crank of 0.3 m and a rod of 0.9 m; C slides on the x axis. @param {number} angle [degrees] */
 function sliderCrank(angle) {
-  const B = /** @type {Point} */ ([0.3 * Math.cos(rad(angle)), 0.3 * Math.sin(rad(angle))]);
+  const B = /** @type {Point} */ (scaled(0.3, direction(rad(angle))));
   const C = /** @type {Point} */ ([B[0] + Math.sqrt(0.81 - B[1] ** 2), 0]);
   return sliding(linkage({ A: [0, 0], B, C }, ["AB", "BC"], "A"), 1, [0.45, 0], 0);
 }
@@ -104,17 +90,6 @@ function integrated(rate, x, time) {
   return x;
 }
 
-/** Return the angle [rad] at which a function changes its sign. @param {(angle: number) => number} of @param {number} low @param {number} high [degrees] */
-function zero(of, low, high) {
-  const sign = Math.sign(of(low));
-  for (let round = 0; round < 60; round++) {
-    const middle = (low + high) / 2;
-    if (Math.sign(of(middle)) === sign) low = middle;
-    else high = middle;
-  }
-  return low;
-}
-
 /** Return the arc of the contact for each radian; curvatures [1/m] are positive towards the material. @param {number} fixed @param {number} rolling */
 const arcRate = (fixed, rolling) => 1 / (fixed + rolling);
 const CURVE = 1 / (2.6 / Math.tan(0.4)); // curvature of the car's circle [1/m]
@@ -134,8 +109,7 @@ export const ANSWERS = {
   tip_speed: () => {
     const links = pendulum(30, 60);
     const turning = rates(links, [[-1, 0, 2], [0, 1, -3]]); // the rate of the second link is relative to the first one
-    const [x, y] = placed([0, 0, links.pose[5]], [0.5, 0]);
-    return Math.hypot(turning[3] - turning[5] * y, turning[4] + turning[5] * x);
+    return Math.hypot(...velocity(links, turning, 1, [0.5, 0]));
   },
   freedoms_with_handle: () => freedoms(linkage(STANDING, [...PERSON, "SL", "LG"], "AEG")),
   centre_above: () => instantCentre([0, 0, 0], [3, 0, 2])?.[1] ?? NaN,
@@ -154,8 +128,8 @@ export const ANSWERS = {
   },
   rocker_angle: () => fourBar(180).pose[8],
   other_assembly: () => {
-    const { pose } = fourBar(90, true);
-    return -placed([pose[6], pose[7], pose[8]], [0.4 * Math.SQRT2, 0])[1];
+    const { pose } = fourBar(90, -1);
+    return -placed([pose[6], pose[7], pose[8]], [L3 / 2, 0])[1];
   },
   dead_centre: () => zero((angle) => rates(fourBar(angle), [[-1, 0, 10]])[8], 30, 90),
   slider_place: () => {

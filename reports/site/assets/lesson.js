@@ -230,21 +230,23 @@ function compare(part, runs, answers, wrong) {
   const exact = answers.some(({ quantities }) => quantities.some((/** @type {any} */ each) => each.found.exact));
   const names = [...(exact ? ["exact"] : []), ...Object.keys(NAMES).filter((name) => answers.some(({ motions }) => motions.some((/** @type {any} */ each) => each.name === name)))];
   const [head, body] = [document.createElement("thead"), document.createElement("tbody")];
-  const title = head.insertRow();
-  for (const name of ["run", ...names]) title.append(Object.assign(document.createElement("th"), { scope: "col", textContent: NAMES[name] ?? (name === "exact" ? "exact motion" : name) }));
+  const heading = (/** @type {"col"|"row"} */ scope, /** @type {string|Element} */ content) => {
+    const made = Object.assign(document.createElement("th"), { scope });
+    made.append(content);
+    return made;
+  };
+  head.insertRow().append(...["run", ...names].map((name) => heading("col", NAMES[name] ?? (name === "exact" ? "exact motion" : name))));
   runs.forEach(({ label, places }, index) => {
     const row = body.insertRow();
     const show = Object.assign(document.createElement("button"), { type: "button", textContent: label });
     show.addEventListener("click", () => stageOf(part, places, true));
-    const heading = Object.assign(document.createElement("th"), { scope: "row" });
-    heading.append(show);
-    row.append(heading);
+    row.append(heading("row", show));
     for (const name of names) row.insertCell().textContent = cell(name, answers[index], index ? answers[0] : null);
   });
   const times = JSON.parse(wrong?.dataset.times ?? "{}");
   if (wrong && Object.keys(times).length) {
     const row = body.insertRow(1);
-    row.append(Object.assign(document.createElement("th"), { scope: "row", textContent: `expected with your answer: ${wrong.textContent}` }));
+    row.append(heading("row", `expected with your answer: ${wrong.textContent}`));
     for (const name of names) row.insertCell().textContent = expected(name, times[name], answers[0], wrong.dataset.of);
   }
   table.replaceChildren(head, body);

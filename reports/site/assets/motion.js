@@ -23,6 +23,9 @@ export const NAMES = { munk: "pymunk", mujoco: "MuJoCo" };
 export const MARKS = { munk: 1, mujoco: 2 };
 export const UNITS = { angle: "rad", position: "m" };
 
+/** Place a drawing at a pose. @param {Element} element @param {number} x @param {number} y @param {number} angle [rad] */
+export const put = (element, x, y, angle) => element.setAttribute("transform", `translate(${x} ${y}) rotate(${(angle * 180) / Math.PI})`);
+
 /** Return the position of a pointer in the coordinates of a part of a drawing. @param {Element|null} part @param {PointerEvent} event @returns {Point} */
 export function pointerIn(part, { clientX, clientY }) {
   const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(/** @type {SVGGraphicsElement} */ (part).getScreenCTM()?.inverse());

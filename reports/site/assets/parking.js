@@ -1,7 +1,7 @@
 // @ts-check
 /** A skate that the reader turns and slides by hand to a place straight sideways, and the commutator of both moves. */
 
-import { pointerIn } from "./motion.js";
+import { placed, pointerIn, put } from "./motion.js";
 import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {[number, number, number]} Pose x, y [m] and angle [rad] of the blade
@@ -40,14 +40,15 @@ export function append(moves, move) {
 // The sum with 0 turns -0 into 0.
 const degrees = (/** @type {number} */ angle) => `${(Math.round((angle * 1800) / Math.PI) / 10 + 0).toFixed(1)}°`;
 const metres = (/** @type {number} */ length) => `${(Math.round(length * 1000) / 1000 + 0).toFixed(3)} m`;
-const BODY = "M-.24 -.09H.24V.09H-.24Z";
+const NOSE = 0.24; // distance from the blade [m]
+const BODY = `M${-NOSE} -.09H${NOSE}V.09H${-NOSE}Z`;
 
 /** @param {HTMLElement} place */
 function begin(place) {
   place.innerHTML =
     '<svg class="lot" viewBox="-.95 -.75 1.9 1.1" tabindex="0" role="application" aria-label="The skate. The left and right arrow keys turn it, the up and down arrow keys slide it.">' +
     `<g transform="scale(1 -1)"><path class="kerb" d="M-.9 ${GOAL + 0.14}H.9M-.9 -.14H.9"/><path class="goal" d="${BODY}" transform="translate(0 ${GOAL})"/>` +
-    `<path class="start" d="${BODY}"/><path class="track"/><g class="skate"><path class="car" d="${BODY}"/><path class="blade" d="M-.12 0H.12"/><circle class="nose" cx=".24" r=".05"/></g></g></svg>` +
+    `<path class="start" d="${BODY}"/><path class="track"/><g class="skate"><path class="car" d="${BODY}"/><path class="blade" d="M-.12 0H.12"/><circle class="nose" cx="${NOSE}" r=".05"/></g></g></svg>` +
     '<div class="controls"><button data-turn="1">Turn left</button><button data-turn="-1">Turn right</button><button data-slide="1">Slide ahead</button><button data-slide="-1">Slide back</button>' +
     '<button data-shown="commutator">Show the commutator</button><button data-shown="sidestep">Show the sidestep</button><button data-shown="">Start again</button></div>' +
     '<p class="count" role="status"></p>';
@@ -72,7 +73,7 @@ function begin(place) {
   }
 
   function show() {
-    find(".skate").setAttribute("transform", `translate(${pose[0]} ${pose[1]}) rotate(${(pose[2] * 180) / Math.PI})`);
+    put(find(".skate"), ...pose);
     find(".track").setAttribute("d", `M${track.map(([x, y]) => `${x.toFixed(4)} ${y.toFixed(4)}`).join("L")}`);
     const parked = Math.hypot(pose[0], pose[1] - GOAL) < NEAR.place && Math.abs(pose[2]) < NEAR.angle;
     const total = (/** @type {(move: Move) => number} */ of) => moves.reduce((sum, move) => sum + Math.abs(of(move)), 0);
@@ -121,10 +122,10 @@ function begin(place) {
   drawing.addEventListener("pointermove", (event) => {
     if (!drawing.hasPointerCapture(event.pointerId)) return;
     const [x, y] = pointerIn(drawing.firstElementChild, event);
-    const [c, s] = [Math.cos(pose[2]), Math.sin(pose[2])];
-    const [along, across] = [c * (x - pose[0]) + s * (y - pose[1]) - 0.24, c * (y - pose[1]) - s * (x - pose[0])];
+    const [ahead, across] = placed([0, 0, -pose[2]], [x - pose[0], y - pose[1]]);
+    const along = ahead - NOSE;
     // One kind of move at a time, so that the moves can be counted.
-    if (Math.abs(across) > 2 * Math.abs(along)) drive({ turn: Math.atan2(across, 0.24), slide: 0 });
+    if (Math.abs(across) > 2 * Math.abs(along)) drive({ turn: Math.atan2(across, NOSE), slide: 0 });
     else if (Math.abs(along) > 2 * Math.abs(across)) drive({ turn: 0, slide: Math.max(-0.1, Math.min(0.1, along)) });
   });
   drawing.addEventListener("pointerup", stored);

@@ -3,13 +3,10 @@
 
 import { errorChart, svg } from "./chart.js";
 import { Lens } from "./lens.js";
-import { UNITS, placed, pointerIn, poseAt, told } from "./motion.js";
+import { UNITS, placed, pointerIn, poseAt, put, told } from "./motion.js";
 import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
-
-/** @param {Element} element @param {number} x @param {number} y @param {number} angle [rad] */
-const put = (element, x, y, angle) => element.setAttribute("transform", `translate(${x} ${y}) rotate(${(angle * 180) / Math.PI})`);
 
 /** Return the path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
 function pathOf(pose, bodies, body, point) {

@@ -20,17 +20,12 @@ const DASHES = /** @type {Record<string, string>} */ ({ default: "2 3", tuned: "
 let headings = {};
 
 /** @param {string} name */
-const chosen = (name) => /** @type {HTMLSelectElement|HTMLInputElement} */ (form.elements.namedItem(name)).value;
-
-/** @param {HTMLSelectElement} select @param {string[]} words */
-function fill(select, words) {
-  select.replaceChildren(...words.map((word) => new Option(word || "all", word)));
-}
+const field = (name) => /** @type {HTMLSelectElement & HTMLInputElement} */ (form.elements.namedItem(name));
 
 /** @param {Row[]} rows */
 function draw(rows) {
-  const [scene, engine, x, y, words] = ["scene", "engine", "x", "y", "filter"].map(chosen);
-  const all = /** @type {HTMLInputElement} */ (form.elements.namedItem("all")).checked;
+  const [scene, engine, x, y, words] = ["scene", "engine", "x", "y", "filter"].map((name) => field(name).value);
+  const all = field("all").checked;
   const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
   const kept = rows.filter(
     (row) =>
@@ -42,7 +37,7 @@ function draw(rows) {
     .filter((row) => Number(row[x]) > 0 && Number(row[y]) > 0)
     .map((row) => ({ ...row, method: nameOf(row) }));
   const engines = [...new Set(points.map((row) => String(row.engine)))];
-  const [across, error] = ["x", "y"].map((name) => /** @type {HTMLSelectElement} */ (form.elements.namedItem(name)).selectedOptions[0].text);
+  const [across, error] = ["x", "y"].map((name) => field(name).selectedOptions[0].text);
   chart.replaceChildren(
     points.length
       ? Plot.plot({
@@ -116,10 +111,9 @@ async function begin() {
   ({ looks, headings } = told);
   /** @type {Row[]} */
   const rows = told.rows.map((/** @type {unknown[]} */ row) => Object.fromEntries(told.columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])));
-  const unique = (/** @type {string} */ name) => [...new Set(rows.map((row) => String(row[name])))].sort();
-  fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("scene")), unique("scene"));
-  fill(/** @type {HTMLSelectElement} */ (form.elements.namedItem("engine")), ["", ...unique("engine")]);
-  /** @type {HTMLSelectElement} */ (form.elements.namedItem("scene")).value = "free_four_bar";
+  for (const name of ["scene", "engine"]) field(name).append(...[...new Set(rows.map((row) => String(row[name])))].sort().map((word) => new Option(word)));
+  field("engine").prepend(new Option("all", "", true, true));
+  field("scene").value = "free_four_bar";
   const restore = () => {
     for (const [name, value] of new URLSearchParams(location.hash.slice(1))) {
       const element = form.elements.namedItem(name);
