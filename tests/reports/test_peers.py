@@ -35,6 +35,7 @@ from reports.pages.speed.table import (
 from tests.toys import Disc
 
 TRUE = Disc().motion(np.linspace(0, Disc().duration, SAMPLES + 1)).pose[..., 2]
+LOOP = FreeFourBar()
 needs_numba = pytest.mark.skipif(not loading.installed(), reason="compiled code needs numba")
 
 
@@ -131,6 +132,7 @@ def test_each_evaluation_of_a_runge_kutta_method_of_pinocchio_counts():
         pytest.skip("pinocchio is not installed")
     euler, rk4 = (next(peers.by_steps(engine, Disc()).settings) for engine in peers.METHODS["pinocchio"])
     assert (euler.evaluations, rk4.evaluations) == (SAMPLES, 4 * SAMPLES)
+    assert all(peers._evaluations(scene, constrained)() > 0 for scene, constrained in ((Disc(), False), (LOOP, True)))
 
 
 @needs_numba

@@ -1,4 +1,4 @@
-"""Tests without features that Windows and macOS lack, and a test of lower bounds."""
+"""Tests without features that Windows and macOS lack, and tests of lower bounds and of the allowed imports."""
 
 from __future__ import annotations
 
@@ -73,3 +73,31 @@ def test_every_dependency_has_a_lower_bound():
     assert len(bounds) == len(set(bounds)) > 10
     with pytest.raises(ValueError, match="'loose' has no lower bound"):
         lower_bounds('[project]\ndependencies = ["loose"]\noptional-dependencies = {test = []}')
+
+
+READS = ("engines.own", "library.joints"), ("engines.own", "library.curves.circle")
+
+
+@pytest.mark.parametrize(
+    ("imports", "kept"),
+    [
+        (READS, True),
+        ((*READS, ("engines.own", "library.scenes")), False),
+        ((*READS, ("library.joints", "library.scenes")), False),  # indirectly
+        (READS[:1], False),  # an allowed package that is not imported
+    ],
+)
+def test_an_engine_imports_only_what_the_list_allows(imports, kept):
+    pytest.importorskip("importlinter", reason="import-linter comes with the extra `develop`")
+    from grimp import ImportGraph
+
+    from tests.tools.import_contract import AllowListContract
+
+    graph = ImportGraph()
+    for name in ("engines", "engines.own", "library", "library.joints", "library.curves", "library.scenes"):
+        graph.add_module(name)
+    for importer, imported in imports:
+        graph.add_import(importer=importer, imported=imported)
+    allowed = ["library.joints", "library.curves.*"]
+    terms = {"source": "engines", "within": "library", "allowed": allowed}
+    assert AllowListContract("a list", {"root_packages": ["engines"]}, terms).check(graph, False).kept == kept
