@@ -34,7 +34,7 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import FreeSliderCrank
 from reference.scenes.wheels.vehicles import CarAndTrailer
 from reports.bench.random_loops import RandomLoops
-from reports.pages.speed.table import ABSENT, JUDGE, ONE_FREEDOM, REACHED, UNREACHED, UNSUPPORTED, SpeedRow
+from reports.pages.speed.table import ABSENT, JUDGE, ONE_COORDINATE, REACHED, UNREACHED, UNSUPPORTED, SpeedRow
 from reports.write.provenance import machine, row_versions
 
 Array = NDArray[np.float64]
@@ -236,10 +236,10 @@ def of_engine(methods: Sequence[Engine], scene: Scene) -> list[Ladder]:
     return ladders
 
 
-def of_one_freedom(scene: Scene) -> list[Ladder]:
+def of_one_coordinate(scene: Scene) -> list[Ladder]:
     """The ladder of the compiled four-bar."""
     assert isinstance(scene, FreeFourBar)  # `measure_peers` leaves out this peer for other scenes
-    from reports.bench.one_freedom import motion
+    from reports.bench.one_coordinate import motion
 
     motion(scene, TOLERANCES[0], SAMPLES)  # compiles
     return [by_tolerances(lambda tolerance: motion(scene, tolerance, SAMPLES), "dop853 adaptive")]
@@ -258,11 +258,11 @@ METHODS: Mapping[str, Sequence[Engine]] = {
 def all_peers() -> tuple[Peer, ...]:
     """The judge, the solution in one coordinate, and the engines."""
     engines = (Peer(name, partial(of_engine, of_name), of_name[0].missing) for name, of_name in METHODS.items())
-    return Peer(JUDGE, of_judge), Peer(ONE_FREEDOM, of_one_freedom), *engines
+    return Peer(JUDGE, of_judge), Peer(ONE_COORDINATE, of_one_coordinate), *engines
 
 
-PEERS = (ONE_FREEDOM, *METHODS)
-LINES = (JUDGE, ONE_FREEDOM, "exudyn", "pinocchio", PINOCCHIO_ALONE, "mujoco", "drake")  # the order in the table
+PEERS = (ONE_COORDINATE, *METHODS)
+LINES = (JUDGE, ONE_COORDINATE, "exudyn", "pinocchio", PINOCCHIO_ALONE, "mujoco", "drake")  # the order in the table
 
 
 def facts(budget: float) -> dict[str, str]:
@@ -334,5 +334,5 @@ def measure_peers(scenes: Iterable[str], engines: Iterable[str], budget: float =
     chosen = [peer for peer in all_peers() if peer.name in (JUDGE, *engines)]
     for name in scenes:
         scene = SCENES[name]
-        usable = [peer for peer in chosen if peer.name != ONE_FREEDOM or isinstance(scene, FreeFourBar)]
+        usable = [peer for peer in chosen if peer.name != ONE_COORDINATE or isinstance(scene, FreeFourBar)]
         yield measure_scene(name, scene, usable, TARGETS, budget)

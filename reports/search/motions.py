@@ -311,10 +311,8 @@ def claim_errors(engine: Engine, mechanism: Mechanism, number: int) -> Errors | 
     reactions. Any other warning withdraws the claims for poses and for reactions. NEEDLESS_REPORT is 1 if a method
     warns although all poses are within the claim, else 0. A needless report is not a fault.
     """
-    steps, every = (
-        CLAIM_STEPS[number % len(CLAIM_STEPS)],
-        SAMPLE_INTERVALS[number // len(CLAIM_STEPS) % len(SAMPLE_INTERVALS)],
-    )
+    steps = CLAIM_STEPS[number % len(CLAIM_STEPS)]
+    every = SAMPLE_INTERVALS[number // len(CLAIM_STEPS) % len(SAMPLE_INTERVALS)]
     dt = CLAIM_SPAN * mechanism.time_scale / steps
     run = engine.build(mechanism, dt)(steps // every, every)
     if run.estimate is None:

@@ -22,7 +22,7 @@ from reports.pages.speed.table import (
     FILE,
     JUDGE,
     NOT_MEASURED,
-    ONE_FREEDOM,
+    ONE_COORDINATE,
     REACHED,
     UNREACHED,
     UNSUPPORTED,
@@ -113,9 +113,11 @@ def test_the_judge_is_behind_below_five_times_and_beyond_twice_the_solution_in_o
     def row(engine, seconds, outcome=REACHED):
         return SpeedRow("four-bar", engine, 1e-3, outcome, "", 1e-4, seconds, 1.0)
 
-    ahead = row("mujoco", 5.1), row(ONE_FREEDOM, 0.51), row(JUDGE, 1.0), row("drake", math.nan, UNSUPPORTED)
+    ahead = row("mujoco", 5.1), row(ONE_COORDINATE, 0.51), row(JUDGE, 1.0), row("drake", math.nan, UNSUPPORTED)
     assert not any(cell.is_behind for cell in ahead)
-    assert all(cell.is_behind for cell in (row("mujoco", 4.9), row(ONE_FREEDOM, 0.49), row("mujoco", 4.9, UNREACHED)))
+    assert all(
+        cell.is_behind for cell in (row("mujoco", 4.9), row(ONE_COORDINATE, 0.49), row("mujoco", 4.9, UNREACHED))
+    )
 
 
 def test_the_part_of_pinocchio_in_cpp_is_its_evaluations_times_the_time_of_one(monkeypatch):
@@ -142,7 +144,7 @@ def test_each_evaluation_of_a_runge_kutta_method_of_pinocchio_counts():
     ids=["free", "spinning", "other branch"],
 )
 def test_the_four_bar_in_one_coordinate_is_the_exact_motion(scene):
-    from reports.bench.one_freedom import motion
+    from reports.bench.one_coordinate import motion
 
     angles, _ = motion(scene, 1e-14, SAMPLES)
     truth = scene.motion(np.linspace(0, scene.duration, SAMPLES + 1)).pose[..., 2]

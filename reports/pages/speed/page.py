@@ -16,7 +16,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from reports.model.page import Material, Page
 from reports.pages.speed.table import (
     JUDGE,
-    ONE_FREEDOM,
+    ONE_COORDINATE,
     REACHED,
     UNREACHED,
     UNSUPPORTED,
@@ -35,7 +35,7 @@ from reports.write.tables import markdown, number
 Reason = tuple[str, tuple[str, ...], tuple[float, ...], str]
 REASONS: tuple[Reason, ...] = (
     (
-        ONE_FREEDOM,
+        ONE_COORDINATE,
         (),
         (),
         "it has one equation and no joint forces, where each evaluation of the judge solves eight rows for nine "
@@ -173,7 +173,7 @@ def context_of(table: SpeedTable) -> Mapping[str, Any]:
 
 def _look(engine: str, engines: Sequence[str]) -> dict[str, Any]:
     """Engines differ by the form and the filling of their marks, and therefore also in grey."""
-    if engine == ONE_FREEDOM:
+    if engine == ONE_COORDINATE:
         return {"marker": "X", "color": LIGHT.ink, "markerfacecolor": LIGHT.ink}
     family = _family(engine)
     paint = colour(family)

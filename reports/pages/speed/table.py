@@ -17,7 +17,7 @@ from reports.write.tables import DASH, number
 FILE = "speed.csv"
 RESULTS = Path(__file__).parents[2] / "results"
 JUDGE = "lagrange"
-ONE_FREEDOM = "one coordinate"
+ONE_COORDINATE = "one coordinate"
 # UNSUPPORTED is a word of stored files. A page says that the adapter does not build the scene.
 REACHED, UNREACHED, UNSUPPORTED, ABSENT = "reached", "not reached", "no such joint", "not installed"
 SAME_FACTS = ("machine", "versions", "budget")  # of rows that may be in one table
@@ -66,7 +66,7 @@ class SpeedRow:
     @property
     def is_behind(self) -> bool:
         """Whether the judge misses its aim in this cell."""
-        if self.engine == ONE_FREEDOM:
+        if self.engine == ONE_COORDINATE:
             return self.outcome == REACHED and self.ratio < 1 / WANTED_WITHIN
         is_bounded = self.outcome in (REACHED, UNREACHED)
         return self.engine != JUDGE and is_bounded and self.ratio < WANTED_AHEAD
