@@ -101,9 +101,10 @@ def vector_of(value: Any) -> ir.Value:
 
 
 def least(left: Any, right: Any) -> Any:
-    if isinstance(right, Number):
-        return right.chosen("<", left, right, left)
-    return left.chosen("<", right, left, right) if isinstance(left, Number) else min(left, right)
+    """The smaller value, or NaN if one is NaN."""
+    if isinstance(left, Number):
+        return left.intrinsic("minimum", right)
+    return right.intrinsic("minimum", left) if isinstance(right, Number) else min(left, right)
 
 
 def largest(left: Any, right: Any) -> Any:
