@@ -17,23 +17,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines.lagrange.compiled_model import CompiledModel
+from engines.lagrange.engine import Lagrange
 from engines.lagrange.records import System
 from engines.lagrange.running import FIXED_STEP_TABLEAUS
-from engines.lagrange.sweep import ParameterSweep
+from engines.lagrange.sweep import INVERSE_LENGTH, ParameterSweep
 from engines.lagrange.system import Key
-from reference.checks import Count, InvalidMechanism, Positive, require_room, validated
+from reference.checks import Count, InvalidMechanism, Positive, require_room, validate, validated
 from reference.mechanism import Mechanism
 from reference.trajectory import RunWarning
 
 if TYPE_CHECKING:
-    from engines.lagrange.engine import Lagrange
     from engines.lagrange.lanes.program import MachineCode
 
 Array = NDArray[np.float64]
 
-# Nominal CPU time [s] of a group of mechanisms from which on a program is compiled, which takes half a second.
-WORTH_COMPILING = 2.0
-# Most products in the matrix of a mechanism in a program. The program of more products takes too long to compile.
+# Nominal CPU time [s] per product in the matrix from which on a group has a program. The compilation takes 0.3 s and
+# 0.013 s for each product (measured up to 470 products), and single runs take a third of the nominal time.
+WORTH_COMPILING = 0.04
+# Most products in the matrix of a mechanism in a program, whose compilation then takes 13 s.
 MOST_PRODUCTS = 1000
 # Numbers in the poses that a thread computes at a time (32 MB).
 CHUNK_NUMBERS = 2**22
@@ -69,7 +70,7 @@ class _Group:
 
 @validated
 def run_batch(
-    engine: Any,
+    engine: Lagrange,
     mechanisms: Any,
     dt: Positive,
     samples: Count,
@@ -78,11 +79,12 @@ def run_batch(
 ) -> Batch:
     """Make `samples * every` steps of dt [s] with each mechanism, and record samples + 1 states.
 
-    engine: a `Lagrange`. mechanisms: a `ParameterSweep`, or a sequence of `Mechanism`s. workers: number of threads, by
-    default one for each processor.
+    mechanisms: a `ParameterSweep`, or a list of `Mechanism`s. workers: number of threads, by default one for each
+    processor.
     Raises InvalidMechanism for a start that does not satisfy the joints, and for a sweep whose mechanism cannot move
     its start.
     """
+    mechanisms = validate("run_batch", "mechanisms", mechanisms, ParameterSweep | tuple[Mechanism, ...])
     if not len(mechanisms):
         raise InvalidMechanism("run_batch: there are no mechanisms; give at least one")
     loop = _Loop(engine, dt, samples, every, workers or _processors())
@@ -109,7 +111,6 @@ class _Loop:
 
     def run_sweep(self, sweep: ParameterSweep) -> Batch:
         mechanism, count = sweep.mechanism, len(sweep)
-        require_room("a batch", (count, self.samples + 1, *mechanism.pose.shape))
         starts = (
             np.array(np.broadcast_to(own if given is None else given, (count, *own.shape)))
             for own, given in ((mechanism.pose, sweep.pose), (mechanism.twist, sweep.twist))
@@ -138,7 +139,7 @@ class _Loop:
             members = [mechanisms[number] for number in numbers]
             own = [system for number in numbers if (system := systems[number]) is not None]
             cost = len(members) * self.samples * self.every * self.engine.step_cost(members[0])
-            if own and cost >= WORTH_COMPILING:
+            if own and cost >= WORTH_COMPILING * (25 + len(own[0].products)):
                 pose, twist = (np.array([getattr(member, name) for member in members]) for name in ("pose", "twist"))
                 group = _Group(members[0], _differences(own), pose, twist, members.__getitem__)
                 found = self._run_group(self._machine(own[0], group), group)
@@ -168,9 +169,8 @@ class _Loop:
         from engines.lagrange.lanes.program import MachineCode, VectorProgram  # imports numba
 
         varied = {key: slot for slot, key in enumerate(group.numbers)}
-        unit = np.tile(group.first.pose_unit, len(group.first.bodies))
         tableau, projects = FIXED_STEP_TABLEAUS[self.engine.integrator], self.engine.stabilisation == "projection"
-        return MachineCode(VectorProgram(system, varied, unit, tableau, projects))
+        return MachineCode(VectorProgram(system, varied, tableau, projects))
 
     def _close(self, machine: MachineCode, group: _Group, is_given: tuple[bool, bool]) -> None:
         """Move the starts onto the joints; raise InvalidMechanism if given starts move or joints do not close."""
@@ -181,12 +181,14 @@ class _Loop:
                 f"sweep: mechanism {int(is_bad.argmax())}: its joints do not close from the start of the given "
                 "mechanism; give `pose` and `twist`, or numbers that are nearer to those of the mechanism"
             )
-        first = group.first
-        for name, moved, start, unit, is_fixed in (
-            ("pose", poses, group.pose, first.pose_unit, is_given[0]),
-            ("twist", twists, group.twist, first.pose_unit / first.time_scale, is_given[1]),
+        scale = np.ones((len(poses), 1, 3))
+        inverse_lengths = group.numbers.get(INVERSE_LENGTH, np.array([1 / group.first.length_scale]))
+        scale[..., :2] = inverse_lengths[:, None, None]
+        for name, moved, start, time, is_fixed in (
+            ("pose", poses, group.pose, 1.0, is_given[0]),
+            ("twist", twists, group.twist, group.first.time_scale, is_given[1]),
         ):
-            errors = (np.abs(moved[:, 0] - start) / unit).max(axis=(1, 2))
+            errors = (np.abs(moved[:, 0] - start) * scale * time).max(axis=(1, 2))
             if is_fixed and not errors.max() <= START_ERROR:
                 raise InvalidMechanism(
                     f"sweep: mechanism {int(errors.argmax())}: its {name} does not satisfy the joints; correct it, or "
@@ -215,7 +217,10 @@ class _Loop:
         """Poses, twists (mechanisms, samples + 1, bodies, 3) and smallest pivots (mechanisms,)."""
         from concurrent.futures import ThreadPoolExecutor  # imported here, as numba above: most processes step no batch
 
+        from engines.lagrange.lanes.number import LANES
+
         count, bodies = group.pose.shape[:2]
+        require_room("a batch", (count, samples + 1, bodies, 3))
         parameters = np.stack([*group.numbers.values()], axis=1) if group.numbers else np.empty((count, 0))
         poses, twists = np.empty((2, count, samples + 1, bodies, 3))
         poses[:, 0], twists[:, 0] = group.pose, group.twist
@@ -225,8 +230,8 @@ class _Loop:
             own = slice(begin, begin + chunk)
             pivots[own] = machine.run(parameters[own], poses[own], twists[own], self.every, self.dt, moves_start)
 
-        chunk = max(1, CHUNK_NUMBERS // ((samples + 1) * 3 * bodies))
-        chunk = min(chunk, -(-count // self.workers))
+        vectors = max(1, CHUNK_NUMBERS // (LANES * (samples + 1) * 3 * bodies))
+        chunk = LANES * min(vectors, -(-count // (LANES * self.workers)))
         with ThreadPoolExecutor(self.workers) as pool:
             list(pool.map(step, range(0, count, chunk)))
         return poses, twists, pivots

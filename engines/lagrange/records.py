@@ -58,8 +58,8 @@ def _record(integers: str, reals: str = "", complexes: str = "", unsigned: str =
 # Points [m] in the frames of the first and of the second body.
 POINT_FIELDS = "first_x first_y second_x second_y "
 # Fields have the units of `reference.joints`, `reference.forces` and `reference.couplings`.
-# `dependent`: whether rows are dependent at the start; `regularised`: a RowLaw.
-CONSTANT_RECORD = _record("dependent regularised holonomic_rows", "gravity_x gravity_y")
+# `dependent`: whether rows are dependent at the start; `regularised`: a RowLaw; `inverse_length`: of the length scale.
+CONSTANT_RECORD = _record("dependent regularised holonomic_rows", "gravity_x gravity_y inverse_length")
 # Inverse inertias and state of a body at the last call of `set_bodies`.
 BODY_RECORD = _record("", "inverse_mass inverse_inertia x y angle cos sin vx vy omega")
 JOINT_RECORD = _record("kind first second row roll", POINT_FIELDS + "angle length ratio offset rate")

@@ -23,6 +23,7 @@ States = Annotated[Floats, of_shape("mechanisms", "bodies", 3)]
 
 POINTS = {"first_point": ("first_x", "first_y"), "second_point": ("second_x", "second_y")}
 GRAVITY = "gravity"
+INVERSE_LENGTH: Key = ("constants", 0, "inverse_length")
 
 
 @dataclass(frozen=True)
@@ -118,6 +119,20 @@ class ParameterSweep(Valid):
             yield from (((group, index, name), column) for name, column in zip(names, columns, strict=True))
             if field == "turning_rate":
                 yield ("equations", int(system.joints[index]["row"]), "rate"), array
+        lengths = self._lengths()
+        if np.ptp(lengths):
+            yield INVERSE_LENGTH, 1 / lengths
+
+    def _lengths(self) -> Array:
+        """The length scales (count,), up to a factor of three and without the points on the ground."""
+        lengths = np.zeros(len(self))
+        for element in (*self.mechanism.joints, *self.mechanism.forces):
+            for field in _record_fields(element):
+                name = {"first_point": element.first, "second_point": element.second, "length": ""}.get(field)
+                if name is not None:
+                    values = self.arrays.get(f"{element.name}.{field}", np.array([getattr(element, field)]))
+                    lengths = np.maximum(lengths, np.abs(values).reshape(len(values), -1).max(axis=1))
+        return np.where(lengths > 0, lengths, self.mechanism.length_scale)
 
     def alone(self, number: int, pose: Array, twist: Array) -> Mechanism:
         """One of the mechanisms, with a start (bodies, 3)."""

@@ -95,6 +95,7 @@ def system_of(mechanism: Mechanism) -> tuple[System, Integers]:
         "holonomic_rows": rows["holonomic"].sum(),
         "gravity_x": gravity_x,
         "gravity_y": gravity_y,
+        "inverse_length": 1 / mechanism.length_scale,
     }
     system = System(
         constants=_table(CONSTANT_RECORD, [constants])[0],

@@ -7,7 +7,7 @@ import pytest
 
 from engines.lagrange import Batch, Lagrange, ParameterSweep, batch, loading, run_batch
 from reference.checks import InvalidMechanism
-from reference.joints import Drive, Pin, Roll
+from reference.joints import Body, Drive, Pin, Rod, Roll
 from reference.mechanism import Mechanism
 from reference.scenes.catalogue import scene
 from reference.scenes.four_bar.scenes import FreeFourBar
@@ -115,6 +115,26 @@ def test_angles_in_all_quarters_and_after_many_turns_give_the_motion_of_a_single
         assert largest_difference(found, number, single, DOP853, 1e-2) < 1e-10  # the rounding of 62832 rad
 
 
+@pytest.mark.usefixtures("no_mechanism_is_run_alone")
+def test_mechanisms_of_very_different_sizes_are_closed_in_units_of_their_own_length():
+    """Angles have the same unit at all sizes, so no body turns here."""
+    sizes = np.array([1.0, 1e-9, 1e9])
+    particles = [
+        Mechanism(
+            (Body("a", 1.0, s * s, (s, 0, 0), (0, -1.5 * s, 0)), Body("b", 1.0, s * s, (2 * s, 0, 0), (0, -5 * s, 0))),
+            (Rod("A", None, "a", (0, 0), (0, 0), s), Rod("B", "a", "b", (0, 0), (0, 0), s)),
+            (0, -9.81 * s),
+        )
+        for s in sizes.tolist()
+    ]
+    numbers = {"A.length": sizes, "B.length": sizes, "gravity": np.outer(sizes, [0, -9.81])}
+    states = (np.array([getattr(mechanism, name) for mechanism in particles]) for name in ("pose", "twist"))
+    for mechanisms in (particles, ParameterSweep(particles[0], numbers, *states)):
+        found = run_batch(Lagrange("euler"), mechanisms, 0.05, 10)
+        for number, mechanism in enumerate(particles):
+            assert largest_difference(found, number, mechanism, Lagrange("euler"), 0.05) < 1e-13
+
+
 def test_a_mechanism_in_a_singular_position_is_run_alone():
     parallelograms = scene("n_four_bar_10")
     mechanism, step = parallelograms.mechanism(), parallelograms.spacing / 64
@@ -150,6 +170,20 @@ def test_mechanisms_of_different_sizes_and_adaptive_steps_have_arrays_of_their_o
 def test_a_wrong_sweep_is_refused(numbers, states, words):
     with pytest.raises(InvalidMechanism, match=words):
         ParameterSweep(pendulum(), numbers, **states)
+
+
+@pytest.mark.parametrize(
+    ("engine", "mechanisms", "samples", "words"),
+    [
+        ("lagrange", [pendulum()], 1, "engine is 'lagrange'; it must be a Lagrange"),
+        (DOP853, pendulum(), 1, "mechanisms is Mechanism.*; it must be a ParameterSweep or"),
+        (DOP853, [], 1, "there are no mechanisms"),
+        (DOP853, [pendulum()] * 2, 2**30, "would take 5.15e[+]10 bytes"),
+    ],
+)
+def test_a_wrong_batch_is_refused(engine, mechanisms, samples, words):
+    with pytest.raises(InvalidMechanism, match=words):
+        run_batch(engine, mechanisms, 1e-2, samples)
 
 
 def test_a_start_that_does_not_satisfy_the_joints_is_refused():

@@ -36,13 +36,11 @@ LISTS = ("matrix", "inverse_pivots", "right", "reaction", "residual", "change")
 class VectorProgram:
     """The program of mechanisms that differ in the numbers `varied`, each with its place in the parameters.
 
-    unit (coordinates,): the units in which a projection is converged. projects: whether to project after each step.
+    projects: whether to project after each step.
     """
 
-    def __init__(
-        self, system: System, varied: Mapping[Key, int], unit: Array, tableau: Tableau, projects: bool
-    ) -> None:
-        self.system, self.varied, self.unit, self.tableau = system, varied, unit, tableau
+    def __init__(self, system: System, varied: Mapping[Key, int], tableau: Tableau, projects: bool) -> None:
+        self.system, self.varied, self.tableau = system, varied, tableau
         self.moving, self.stages = len(system.change) - 3, max(1, len(tableau.nodes))
         self.module, self.places = ir.Module("lanes"), Places()
         for name in ("pose", "twist", "stage_pose", "stage_twist"):
@@ -141,12 +139,13 @@ class VectorProgram:
         system.status.selection = RowSelection.ALL if has_holonomic_rows_only else RowSelection.HOLONOMIC
         call["factorise_rows"](system)
         call["solve"](system, 0)
-        (is_open,), furthest = code.vectors("open"), 0.0
+        (is_open,) = code.vectors("open")
+        furthest: Any = 0.0
         for k, change in enumerate(system.change[: self.moving]):
-            furthest = largest(furthest, abs(change) * (1 / self.unit[k]))
+            furthest = largest(furthest, abs(change) * (1.0 if k % 3 == 2 else system.constants.inverse_length))
             pose[k] = pose[k] + is_open.chosen(">", 0.5, change, 0.0)
         code.put(pose, "pose")
-        is_open = is_open.chosen("<", 0.5, 0.0, (furthest + 0 * is_open).chosen(">", CLOSED, 1.0, 0.0))
+        is_open = is_open.chosen("<", 0.5, 0.0, furthest.chosen(">", CLOSED, 1.0, 0.0))
         pivot = system.status.factor_pivot
         code.put([is_open], "open")
         code.put([least(code.vectors("pivot")[0], pivot)], "pivot")
