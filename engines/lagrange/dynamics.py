@@ -88,22 +88,22 @@ def constrained_acceleration(
     twist: Array,
     target: Array | None = None,
     compliance: Array | float = 0.0,
-    least_pivot: float = RANK_TOLERANCE,
+    rows: Array | None = None,
 ) -> tuple[Array, Array]:
     """Accelerations a (bodies, 3) and reactions r (rows,) with M a = f + J^T r and J a + compliance r = target.
 
     pose, twist (bodies, 3).
     target (rows,): by default the bias -(dJ/dt) v of ideal rows.
     compliance: 0, or a symmetric matrix (rows, rows) [1/kg, or 1/(kg m^2) in rows of torque].
-    least_pivot: see `solve_rows`.
+    rows: J (rows, 3 bodies) at this pose, if it is known.
     """
     free = np.broadcast_to(mechanism.unconstrained(pose, twist), pose.shape)
     if not mechanism.row_count:
         return free, np.zeros(0)
-    rows = mechanism.rows(pose)
+    rows = mechanism.rows(pose) if rows is None else rows
     weighted = rows / mechanism.inertias.reshape(-1)
     target = mechanism.bias(pose, twist) if target is None else target
-    reaction = solve_rows(weighted @ rows.T + compliance, target - rows @ free.reshape(-1), least_pivot=least_pivot)
+    reaction = solve_rows(weighted @ rows.T + compliance, target - rows @ free.reshape(-1), least_pivot=RANK_TOLERANCE)
     return free + (weighted.T @ reaction).reshape(-1, 3), reaction
 
 

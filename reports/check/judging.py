@@ -13,12 +13,12 @@ from scipy.integrate import solve_ivp
 
 from engines import Unsupported
 from engines.lagrange import TRUTH, Judge, Lagrange
-from engines.lagrange.dynamics import Dynamics, constrained_acceleration, solve_rows
+from engines.lagrange.dynamics import Dynamics, constrained_acceleration
 from engines.reading import Reading, RowRegularisation, left_out
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.plane import COMPLEX_STEP
-from reference.rows import RANK_TOLERANCE, undetermined
+from reference.rows import undetermined
 from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 
@@ -48,10 +48,7 @@ def soft_accelerations(mechanism: Mechanism, pose: Array, twist: Array, gap: Arr
     rows, velocity = np.real(along), twist.reshape(-1)
     bias = np.where(np.isnan(give.initial_bias), -(np.imag(along) / COMPLEX_STEP) @ velocity, give.initial_bias)
     target = bias - give.damping * (rows @ velocity - mechanism.rate) - give.stiffness * np.nan_to_num(gap)
-    free, weighted = mechanism.unconstrained(pose, twist).reshape(-1), rows / mechanism.inertias.reshape(-1)
-    matrix = weighted @ rows.T + give.compliance
-    reaction = solve_rows(matrix, target - rows @ free, least_pivot=RANK_TOLERANCE)
-    return (free + weighted.T @ reaction).reshape(-1, 3)
+    return constrained_acceleration(mechanism, pose, twist, target, give.compliance, rows)[0]
 
 
 def soft_motion(

@@ -515,6 +515,7 @@ def test_controls_are_large_enough_for_fingers_and_the_picture_leaves_room_for_t
     assert page.evaluate(SMALL) == []
     assert page.evaluate(UNNAMED) == []
     assert page.locator(".stage-column").bounding_box()["height"] <= 0.4 * PHONE["height"]
+    assert page.locator(".stage-column").evaluate("({ scrollWidth, clientWidth }) => scrollWidth - clientWidth") <= 0
 
 
 def test_the_first_picture_enlarges_differences_that_are_too_small_to_be_seen(opened):
