@@ -473,13 +473,27 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
 
 
 @pytest.mark.parametrize("lesson", [marked("cam")])
-def test_a_motion_about_one_point_gives_no_shapes(opened, lesson):
+def test_a_motion_about_one_point_gives_no_shapes_and_a_wrong_link_changes_nothing(opened, lesson):
+    page = opened(f"lessons/{lesson}.html#set&part=3&scene=0&state=0,0,0,1,0,0,0,0,1", viewport=TALL)
+    assert "0.600 m wide" in page.inner_text(".cam .count")  # 2 (0.5 - 0.2) m, of the ellipse at the start
     page = opened(f"lessons/{lesson}.html", viewport=TALL)
     page.locator("[data-motion=Circle]").click()
     assert page.locator(".widget select").input_value() != "1"
     page.get_by_label("the body turns").select_option("once")  # the page has selected a number that gives two shapes
     assert "only turns about one fixed point" in page.inner_text(".cam .count")
     assert page.locator("[data-file=dxf]").is_disabled()
+
+
+def test_a_link_restores_the_numbers_of_an_erratum(opened):
+    page = opened("lessons/skate.html", viewport=TALL)
+    page.wait_for_selector("#lesson.ready")
+    page.locator("#part-5 .why summary").click()
+    values = page.locator("#part-5 tbody code")
+    before = values.all_text_contents()
+    page.locator("#part-5 .errata input[name=angle]").fill("2.5")
+    page.wait_for_function("location.hash.includes('state=')")
+    linked = opened(f"lessons/skate.html{page.evaluate('location.hash')}", viewport=TALL)
+    assert linked.locator("#part-5 tbody code").all_text_contents() == values.all_text_contents() != before
 
 
 @pytest.mark.parametrize("stride", [4, pytest.param(1, marks=pytest.mark.slow)])

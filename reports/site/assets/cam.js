@@ -156,8 +156,8 @@ function begin(place) {
   const keep = remembered(place, ([turn, ...numbers]) => {
     const points = numbers.flatMap((value, k) => (k % 2 ? [/** @type {Point} */ ([numbers[k - 1], value])] : []));
     const half = points.length / 2;
+    if (half < 2 || half % 1 || ![...turns.options].some(({ value }) => value === String(turn))) return;
     turns.value = String(turn);
-    if (half < 2 || half % 1 || !turns.value) return;
     series = { cosines: points.slice(0, half), sines: points.slice(half) };
     make();
   });

@@ -175,10 +175,6 @@ function begin(place) {
     return `<label class="time">${words} <input type="range" name="${name}" min="${least}" max="${most}" step="any" value="${value}"> <output>${rounded(Number(value))}</output></label>`;
   }).join("")}</div>`;
   const inputs = [...place.querySelectorAll("input")];
-  const keep = remembered(place, (numbers) => inputs.forEach((input, index) => {
-    input.value = String(numbers[index]);
-    input.dispatchEvent(new Event("input"));
-  }));
   for (const input of inputs) {
     input.addEventListener("change", () => keep(inputs.map(({ value }) => Number(value))));
     input.addEventListener("input", () => {
@@ -188,6 +184,10 @@ function begin(place) {
     });
   }
   fill(part, chosen);
+  const keep = remembered(place, (numbers) => inputs.forEach((input, index) => {
+    input.value = String(numbers[index]);
+    input.dispatchEvent(new Event("input"));
+  }));
 }
 
 beginAll("errata", begin);
