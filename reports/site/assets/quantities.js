@@ -64,7 +64,7 @@ export function measured({ kind, bodies }, run, states) {
 const QUANTITY_UNITS = { gap: "m", rates: "rad/s", bend: "s", centre: "m", contact: "m", energy: "J", friction: "" };
 
 /** Return a quantity as text. @param {Quantity["kind"]} kind @param {Found|undefined} found */
-export function worded(kind, found) {
+function worded(kind, found) {
   if (!found) return kind === "bend" ? "never" : "–";
   return `${found.map(told).join(" to ")} ${QUANTITY_UNITS[kind]}`;
 }
