@@ -28,6 +28,7 @@ from reference.trajectory import Trajectory
 Array = NDArray[np.float64]
 
 # If the estimate exceeds the claim, `unresolved_at` is the time at which the estimate exceeds this share of the claim.
+# The value was fitted together with richardson.LEAST.
 EARLY = 1 / 30
 # If the estimate is between these multiples of the claim, a further run decides it (`further_level`).
 OPEN = (0.1, 30.0)

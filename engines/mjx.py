@@ -60,7 +60,8 @@ from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]
 # Compliance R of the stiffest row at t = 0, relative to mjMINVAL, the smallest R in MuJoCo and MJX. A factor of 2 is a
-# margin for a gap of a millimetre, which halves R as shipped.
+# margin for a gap of a millimetre, which halves R as shipped. Another factor of 2 is for rounding the unit to a power
+# of two.
 LEAST_COMPLIANCE = 4.0
 NO_VELOCITY_TERM = RunWarning(
     "upstream: loops lack the velocity term J-dot v in MJX, so that they are wrong at any step",

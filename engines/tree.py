@@ -323,6 +323,7 @@ def world_ends(mechanism: Mechanism, joint: Joint) -> list[tuple[int | None, tup
 
 
 def world_offset(mechanism: Mechanism, name: str | None, point: tuple[float, float]) -> tuple[float, float]:
+    """The vector [m] from a body's centre of mass to a point of the body, in the world's axes at t = 0."""
     if name is None:
         return point
     x, y = components(mechanism.pose[mechanism.body_index(name), 2], *point)

@@ -237,7 +237,7 @@ def joints_swapped(mechanism: Mechanism) -> Described:
 DESCRIPTION_ROUNDING = {"pose": 1e-10, "twist": 1e-9, "reaction": 1e-6}
 # Largest difference relative to the error at this step. Two descriptions may have different errors, for example if
 # rounding decides about a contact, or if rows are solved in sequence. The difference between two descriptions is then
-# at most twice the error.
+# at most twice the error. The margin is for errors between samples.
 ERROR_FACTOR = 3.0
 # Largest difference relative to the error for joints in another order. The convergence rate of Gauss-Seidel iterations
 # depends only on the matrix, but the error after the first iteration depends on the order of the joints.

@@ -120,7 +120,8 @@ class _Loop:
         if system is None:
             if sweep.pose is None or sweep.twist is None:
                 raise InvalidMechanism(
-                    "sweep: these mechanisms are run alone, which needs their starts; give `pose` and `twist`"
+                    "sweep: starts are moved onto the joints in machine code only, which needs the extra 'fast' and a "
+                    "structure without rolling curves, dependent rows or a tolerance; give `pose` and `twist`"
                 )
             return self.run_list([sweep.alone(number, pose[number], twist[number]) for number in range(count)])
         group = _Group(mechanism, dict(sweep.records(system)), pose, twist, lambda k: sweep.alone(k, pose[k], twist[k]))
