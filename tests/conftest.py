@@ -18,7 +18,16 @@ os.environ.pop("COLUMNS", None)  # tables depend on the width of the user's wind
 
 # The longest test files. Long files are run first, so that the workers end at about the same time.
 LONGEST_FILES = (
-    *("site_in_browser", "installations", "cluster", "wrong_models", "any_rows", "lagrange_compiled"),
+    *(
+        "engines_in_browser",
+        "lessons_in_browser",
+        "site_in_browser",
+        "installations",
+        "cluster",
+        "wrong_models",
+        "any_rows",
+        "lagrange_compiled",
+    ),
     *("promised", "matrix", "random", "scenes", "conformance"),
 )
 

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import shutil
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -40,15 +41,20 @@ LONGEST = 30_000.0  # Timeout [ms]. A lesson is ready after less than 1 s on a m
 QUICK = ("four_bar", "skate", "rolling")
 
 
+@functools.cache
+def build_lessons(names: frozenset[str], cache: Path) -> Mapping[str, Any]:
+    answers = {motion: answered(motion) for motion in tasks([BY_NAME["four_bar"]])}
+    source = SiteSource(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
+    return build(source, [lesson for lesson in LESSONS if lesson.name in names])
+
+
 @pytest.fixture(scope="module")
 def files(request):
-    """The site with the lessons in QUICK and with the lessons of the selected tests."""
-    parameters = (vars(item).get("callspec") for item in request.session.items if item.path == request.path)
-    wanted = {*QUICK, *(call.params.get("lesson") for call in parameters if call is not None)}
-    answers = {motion: answered(motion) for motion in tasks([BY_NAME["four_bar"]])}
-    cache = Path(request.config.cache.mkdir("site"))
-    source = SiteSource(**texts_of(RESULTS), answers=answers, cache=cache, foot="Made by a test.", api=False)
-    return build(source, [lesson for lesson in LESSONS if lesson.name in wanted])
+    """The site with the lessons in QUICK and with the lessons of the selected tests. A process builds it once."""
+    items = (item for item in request.session.items if item.path.stem.endswith("_in_browser"))
+    parameters = (vars(item).get("callspec") for item in items)
+    names = {*QUICK, *(call.params.get("lesson", QUICK[0]) for call in parameters if call is not None)}
+    return build_lessons(frozenset(names), Path(request.config.cache.mkdir("site")))
 
 
 @pytest.fixture(scope="module")
@@ -188,3 +194,8 @@ def python_of(live: Live, values: dict[str, Any]) -> tuple[Scene, dict[str, Any]
         if settings and not isinstance(engines[name], str):
             engines[name] = replace(engines[name], **settings)
     return scene, engines, step
+
+
+def marked(*arguments: Any) -> Any:
+    """Return parameters of a test; it is marked slow unless the first parameter, a lesson, is in QUICK."""
+    return pytest.param(*arguments, marks=() if arguments[0] in QUICK else pytest.mark.slow)

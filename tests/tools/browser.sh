@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What tests/reports/test_site_in_browser.py needs, on Debian: a browser, and npm for packages of the site.
+# What the tests in a browser need, on Debian: a browser, and npm for packages of the site.
 # Run it as root, with the environment active; it takes about two minutes.
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -4,7 +4,7 @@
  * The Lagrange multipliers l solve M a = f + J' l and J a = -J. v. The integrator is the extrapolated midpoint method of
  * Gragg, Bulirsch and Stoer, with a projection onto the joints after each step. A mechanism whose drives prescribe the
  * whole motion is not integrated: Newton's method solves its joints at each sample.
- * tests/reports/test_site_in_browser.py compares both with the reference. */
+ * tests/reports/test_engines_in_browser.py compares both with the reference. */
 
 import { placed } from "./motion.js";
 
