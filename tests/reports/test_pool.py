@@ -18,7 +18,7 @@ import pytest
 from reports.cli import conform as conform_command
 from reports.cli.conform import Named, asked
 from reports.model.cells import Cell
-from reports.model.outcomes import Loss, Outcome
+from reports.model.outcomes import Loss, Outcome, describe_exit, from_outside
 from reports.model.tasks import Motion
 from reports.run import supervisor, worker
 from reports.run.running import longest_first, missing, run_cells, run_into
@@ -119,6 +119,17 @@ def test_workers_that_end_while_they_start_are_replaced_or_reported_in_one_line(
     monkeypatch.setattr(worker, "work", dies)
     with pytest.raises(WorkersLost, match=r"5 worker processes in a row ended while they started: .*SIGKILL"):
         list(supervise(act, ["process"], limit=60.0, workers=1))
+
+
+def test_exit_codes_are_distinguished():
+    for code, outside, text in (
+        (-signal.SIGKILL, True, "killed from outside with signal 9 (SIGKILL)"),
+        (-signal.SIGFPE, False, "aborted with signal 8 (SIGFPE)"),
+        (-200, False, "aborted with signal 200 (unknown)"),
+        (0xC0000005, False, "aborted with status 0xC0000005"),
+        (None, True, "the process ended with an unknown exit status"),
+    ):
+        assert (from_outside(code), describe_exit(code)) == (outside, text)
 
 
 class Killer:
