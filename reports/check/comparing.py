@@ -79,7 +79,7 @@ class Comparison:
 
     def _repr_html_(self) -> str:
         drawing = [Section("", picture=(figure.title, figure.svg)) for figure in self.figures().values()]
-        return rendering.body(self.title, [self._section(), *drawing])
+        return rendering.html(self.title, [self._section(), *drawing], page=False)
 
 
 def compare_with_ideal(mechanism: Mechanism, engine: Engine | str, dt: float, duration: float) -> Comparison:

@@ -84,9 +84,9 @@ class CheckReport:
         return f"{self.verdict}\n{plain([self.answer])}"
 
     def _repr_html_(self) -> str:
-        from reports.check.rendering import body
+        from reports.check.rendering import html
 
-        return body(self.verdict, self.sections)
+        return html(self.verdict, self.sections, page=False)
 
 
 @dataclass(frozen=True)

@@ -46,8 +46,7 @@ def atlas(
     engines = tuple(engine for engine in VARIANTS if engine.variant in VARIANTS_SHOWN)
     columns = [column for name in names for column in columns_of(known[name], engines, points)]
     terminal, run_now = Terminal(140), 0
-    with cluster.connect_cluster(scheduler) as connected, opened(results / STORE) as store:
-        crew = connected or cluster.pool(workers)
+    with cluster.connect_cluster(scheduler, workers) as crew, opened(results / STORE) as store:
 
         def run(cells: list[Cell]) -> Mapping[Cell, Measurement]:
             nonlocal run_now

@@ -74,9 +74,9 @@ def run(
     chosen = select(names, engine, variant, own, bool(full or pages), every or (), step or (), pages)
     items = chosen.items
     with telling(140, as_json, as_markdown) as console:
-        with cluster.connect_cluster(scheduler) as crew, opened(results / STORE) as store:
+        with cluster.connect_cluster(scheduler, workers) as crew, opened(results / STORE) as store:
             store.save_references(chosen.references)
-            count = run_interruptible(console, store, items, fresh, limit, crew or cluster.pool(workers))
+            count = run_interruptible(console, store, items, fresh, limit, crew)
             rows = list(store.get(chosen.cells).values())
             print_summary(console, rows)
         for cell, why in chosen.left_out:

@@ -91,10 +91,10 @@ def search(
     folder = results / SEARCH
     with (
         telling(150, as_json, as_markdown) as terminal,
-        cluster.connect_cluster(scheduler) as crew,
+        cluster.connect_cluster(scheduler, workers) as crew,
         opened(folder / STORE) as store,
     ):
-        run = Search(store, crew or cluster.pool(workers), seconds, partial(interruptible, terminal))
+        run = Search(store, crew, seconds, partial(interruptible, terminal))
         found = run.run(batches)
         if published:
             run.run_controls()

@@ -21,6 +21,7 @@ from reports.model.ending import FileTrouble
 from reports.run.files import write_whole
 from reports.write.provenance import versions
 from reports.write.tables import markdown, number, text_table
+from reports.write.templates import environment
 
 HEADER = ("scene", "method", "step [s]", "error", "bound", "nearest check", "how near", "verdict")
 
@@ -80,31 +81,23 @@ def vacuous_checks(verdicts: Iterable[CaseVerdict]) -> list[str]:
 def report(verdicts: Iterable[CaseVerdict], baseline: Baseline) -> str:
     """The report as Markdown with a summary, failures, known deviations, and the table."""
     verdicts = tuple(verdicts)
-    failed = [v for v in verdicts if v.theory_complaints or v.change_complaints]
-    deviating = [v for v in verdicts if v.case.known and v not in failed]
-    parts = [
-        "# Crosscheck",
-        f"{len(verdicts)} scenes and methods, {len(failed)} failed, {len(deviating)} with known deviations. "
-        f"{versions()}.",
-    ]
-    if failed:
-        parts.append("## Failed")
-        sentences = [
-            f"{v.case.label}: {sentence}" for v in failed for sentence in (*v.theory_complaints, *v.change_complaints)
-        ]
-        parts.append("\n".join(f"* {sentence}" for sentence in sentences))
-    if deviating:
-        parts.append("## Known deviations")
-        body = [
-            [v.case.scene.name, v.case.method, name, d.told, d.reason] for v in deviating for name, d in v.case.known
-        ]
-        parts.append(markdown(["scene", "method", "check", "times its bound", "why"], body, left=5))
-    parts += ["## Checks that can't fail", "\n".join(f"* {sentence}" for sentence in vacuous_checks(verdicts))]
-    changed = changes(verdicts, baseline)
-    if changed:
-        parts += ["## Baseline", "\n".join(f"* {sentence}" for sentence in changed)]
-    parts += ["## All", markdown(HEADER, lines(verdicts), left=2)]
-    return "\n\n".join(parts) + "\n"
+    complaints = [(v, (*v.theory_complaints, *v.change_complaints)) for v in verdicts]
+    deviating = [v for v, sentences in complaints if v.case.known and not sentences]
+    known = [[v.case.scene.name, v.case.method, name, d.told, d.reason] for v in deviating for name, d in v.case.known]
+    return (
+        environment(Path(__file__).parent)
+        .get_template("own/report.md")
+        .render(
+            count=len(verdicts),
+            failed=[(v.case.label, sentences) for v, sentences in complaints if sentences],
+            deviating=len(deviating),
+            versions=versions(),
+            known=markdown(["scene", "method", "check", "times its bound", "why"], known, left=5),
+            vacuous=vacuous_checks(verdicts),
+            changed=changes(verdicts, baseline),
+            table=markdown(HEADER, lines(verdicts), left=2),
+        )
+    )
 
 
 BASELINE = Path(__file__).parents[1] / "results" / "errors.csv"

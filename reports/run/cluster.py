@@ -1,8 +1,8 @@
 """Functions that run items on a Dask cluster. The results are the same as those of `supervise` on this machine.
 
 A Dask task is a chunk of items. A Dask worker runs the items in supervised processes, so an engine that aborts does not
-end the Dask worker. Items are sent pickled, so the scheduler does not import engines. An item is sent with its key. A
-process with other versions or files computes another key and does not run the item.
+end the Dask worker. Items are sent pickled, so the scheduler does not import engines. An item is sent with the versions
+that affect its result. A process with other versions or files does not run the item.
 """
 
 from __future__ import annotations
@@ -16,13 +16,14 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
+from itertools import accumulate, groupby
 from pathlib import Path
 from typing import Any
 
 from reports.model.ending import BadInput, describe
-from reports.model.fingerprint import versions_of
+from reports.model.fingerprint import OURS, versions_of
 from reports.model.outcomes import Loss, Outcome
 from reports.run.files import temporary_folder
 from reports.run.running import expected_seconds
@@ -30,18 +31,15 @@ from reports.run.supervisor import TICK, Answer, Supervise, Watch, WorkersLost, 
 from reports.run.worker import process_start, worker_count
 
 WORDS = re.compile(r"(?:tcp|tls)://\S+:\d+|local:([1-9]\d{0,2})")
-FORMS = "tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here"
 ANSWERS_WITHIN = 10.0  # Longest time until a scheduler answers [s].
-WORKERS_WITHIN = 120.0  # Longest time until the first worker connects [s].
+WORKERS_WITHIN = 120.0  # Longest time without a worker [s].
 CHUNK = 2.0  # Expected time of a chunk [s], which is much longer than the time to send it and to start processes.
 _closing = threading.Event()  # Set when the client has ended, so that local workers end their processes.
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """The answer for an item that was not run because the worker has other versions, which are in `versions`."""
-
-    versions: dict[str, str]
+    reason: str  # Why a worker does not run an item.
 
 
 @dataclass(frozen=True)
@@ -58,29 +56,23 @@ def pool(workers: int | None) -> Workforce:
 
 
 def chunks(items: Iterable[Any]) -> list[list[Any]]:
-    """Divide the items, in their order, into chunks with an expected time of CHUNK seconds."""
-    out: list[list[Any]] = []
-    remaining = 0.0
-    for item in items:
-        seconds = expected_seconds(item)
-        if seconds > remaining or not out:
-            out.append([])
-            remaining = CHUNK
-        out[-1].append(item)
-        remaining -= seconds
-    return out
+    """Divide the items, in their order, into chunks with an expected time of about CHUNK seconds."""
+    items = tuple(items)
+    ends = zip(items, accumulate(map(expected_seconds, items)), strict=True)
+    return [[item for item, _ in part] for _, part in groupby(ends, lambda pair: pair[1] // CHUNK)]
 
 
-def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_key: bytes) -> Any:
-    """The result of a pickled (item, key), or a Refusal. Workers call this function. paths: sys.path of the client."""
+def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_versions: bytes) -> Any:
+    """The result of a pickled (item, versions), or a Refusal. paths: sys.path of the client."""
     sys.path += [path for path in paths if path not in sys.path and Path(path).exists()]
     try:
-        item, key = pickle.loads(item_and_key)
+        item, local = pickle.loads(item_and_versions)
     except (ImportError, AttributeError) as error:
-        return Refusal({"what it would run": describe(error)})
-    if key is not None and replace(item).key != key:  # `replace` makes a copy without a cached key.
-        return Refusal(versions_of(item))
-    return function(item)
+        return Refusal(describe(error))
+    remote = versions_of(item, folders=OURS)
+    names = sorted(name for name in {*local, *remote} if local.get(name) != remote.get(name))
+    there, here = (lambda name: remote.get(name, "missing")), (lambda name: local.get(name, "missing"))
+    return Refusal("; ".join(f"{n} {there(n)} there, {here(n)} here" for n in names)) if names else function(item)
 
 
 def run_chunk(data: bytes) -> bytes:
@@ -99,41 +91,45 @@ def run_chunk(data: bytes) -> bytes:
 
 
 @contextmanager
-def connect_cluster(scheduler: str | None) -> Iterator[Workforce | None]:
-    """Connect to the cluster that `--scheduler` names. Yields None without a cluster. Raises BadInput."""
+def connect_cluster(scheduler: str | None, workers: int | None = None) -> Iterator[Workforce]:
+    """The cluster that `--scheduler` names, or without a name the `pool` of this machine. Raises BadInput."""
     if scheduler is None:
-        yield None
+        yield pool(workers)
         return
-    local_cluster = WORDS.fullmatch(scheduler)
-    if not local_cluster:
-        raise BadInput(f"--scheduler is {scheduler!r}; it must be {FORMS}")
+    refused = f"--scheduler is {scheduler!r}"
+    if not (words := WORDS.fullmatch(scheduler)):
+        raise BadInput(f"{refused}; it must be tcp://HOST:PORT of a Dask scheduler, or local:N for N workers here")
     try:
         import distributed
     except ImportError:
-        raise BadInput(
-            f"--scheduler is {scheduler!r}, which needs Dask, and it is not installed: pip install '.[cluster]'"
-        ) from None
+        raise BadInput(f"{refused}, which needs Dask, and it is not installed: pip install '.[cluster]'") from None
     for name in ("distributed", "tornado"):  # Rows report errors of workers.
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         try:
             with process_start():  # Started processes ignore Ctrl-C, which this process handles.
                 where: Any = scheduler
-                if local_cluster[1]:  # Dask uses threads, since cells run in further processes.
+                if words[1]:  # Dask uses threads, since cells run in further processes.
                     folder = str(stack.enter_context(temporary_folder()))
                     options: dict[str, Any] = {"processes": False, "threads_per_worker": 1, "memory_limit": None}
                     options |= {"local_directory": folder, "dashboard_address": "127.0.0.1:0"}
-                    where = stack.enter_context(distributed.LocalCluster(n_workers=int(local_cluster[1]), **options))
+                    where = stack.enter_context(distributed.LocalCluster(n_workers=int(words[1]), **options))
                     _closing.clear()
                     stack.callback(_closing.set)
                 client = stack.enter_context(distributed.Client(where, timeout=ANSWERS_WITHIN, set_as_default=False))
                 client.wait_for_workers(1, timeout=WORKERS_WITHIN)
         except OSError as error:  # This includes timeouts.
             raise BadInput(
-                f"--scheduler is {scheduler!r}: no scheduler with workers answers there ({describe(error)[:200]}); "
-                "start them with: dask scheduler, dask worker"
+                f"{refused}: no scheduler with workers answers there ({describe(error)[:200]}); start them with: dask "
+                "scheduler, dask worker"
             ) from None
         yield Workforce(_threads(client), partial(_supervise, client, scheduler))
+
+
+def _threads(client: Any) -> int:
+    with suppress(OSError, ValueError):
+        return sum(client.nthreads().values()) if client.status == "running" else 0
+    return 0
 
 
 def _supervise(
@@ -148,9 +144,10 @@ def _supervise(
 ) -> Iterator[Answer]:
     """Yield (item, result or Loss, note) like `supervise`. The number of workers is ignored. Raises BadInput if a
     worker has other versions. Raises WorkersLost if no worker connects for WORKERS_WITHIN seconds."""
-    parts = chunks(items)
-    job = partial(run_item, function, tuple(filter(None, sys.path)))
-    packed = [(job, [pickle.dumps((i, getattr(i, "key", None))) for i in part], limit, wall) for part in parts]
+    parts, job = chunks(items), partial(run_item, function, tuple(filter(None, sys.path)))
+    packed = [
+        (job, [pickle.dumps((item, versions_of(item, folders=OURS))) for item in part], limit, wall) for part in parts
+    ]
     futures = client.map(run_chunk, [pickle.dumps(chunk) for chunk in packed], pure=False, retries=2)
     remaining = dict(zip(futures, parts, strict=True))
     seen = time.monotonic()
@@ -159,9 +156,12 @@ def _supervise(
             done = [future for future in remaining if future.done()]
             for future in done:
                 part = remaining.pop(future)
-                for index, result, note in _answers(future, len(part), scheduler):
+                for index, result, note in _answers(future, len(part)):
                     if isinstance(result, Refusal):
-                        raise _refused(result, part[index], scheduler)
+                        raise BadInput(
+                            f"a worker at {scheduler} would give other rows ({result.reason}): nothing was run there; "
+                            "install the same"
+                        )
                     yield part[index], result, note
             threads = _threads(client)
             seen = time.monotonic() if threads else seen
@@ -169,38 +169,17 @@ def _supervise(
                 raise WorkersLost(f"no worker is at {scheduler}: what is done is stored; start some with: dask worker")
             if watch is not None:
                 watch([part[0] for part in list(remaining.values())[:threads]])
-            if not done:
-                time.sleep(TICK)
+            time.sleep(0.0 if done else TICK)
     finally:
         with suppress(Exception):  # Errors of the scheduler do not matter any more.
             client.cancel(futures, force=True)
 
 
-def _threads(client: Any) -> int:
-    with suppress(OSError, ValueError):
-        return sum(client.nthreads().values()) if client.status == "running" else 0
-    return 0
-
-
-def _answers(future: Any, count: int, scheduler: str) -> list[tuple[int, Any, str]]:
-    """The answers to a chunk of `count` items. Raises BadInput if this program is not installed on a worker."""
+def _answers(future: Any, count: int) -> list[tuple[int, Any, str]]:
     try:
         return pickle.loads(future.result(timeout=ANSWERS_WITHIN))
-    except (ImportError, AttributeError) as error:
-        raise BadInput(
-            f"a worker at {scheduler} can't run cells ({describe(error)}): install this program there"
-        ) from None
+    except (ImportError, AttributeError) as error:  # This program is not installed on the worker.
+        return [(0, Refusal(describe(error)), "")]
     except Exception as error:
         loss = Loss(Outcome.LOST, f"every worker ended that ran it: {describe(error)}")
         return [(index, loss, "") for index in range(count)]
-
-
-def _refused(refusal: Refusal, item: Any, scheduler: str) -> BadInput:
-    local, remote = versions_of(item), refusal.versions
-    names = sorted(name for name in {*local, *remote} if local.get(name) != remote.get(name))
-    differences = "; ".join(
-        f"{name} {remote.get(name, 'missing')} there, {local.get(name, 'missing')} here" for name in names
-    )
-    return BadInput(
-        f"a worker at {scheduler} would give other rows ({differences}): nothing was run there; install the same"
-    )

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,23 +28,9 @@ from reports.search.parts import Recipe
 from reports.search.recipe import build
 from reports.search.release import check_accelerations
 from reports.search.subjects import Alone, Subject
+from reports.write.templates import environment
 
-# Code of a script: a function that returns the poses of bodies.
-POSES_FUNCTION = """
-
-def poses(model, data, start):
-    bodies = [model.body(f"body {number}").id for number, _ in enumerate(start, 1)]
-    turned = [math.atan2(data.xmat[body][3], data.xmat[body][0]) for body in bodies]
-    return [(*data.xipos[body][:2], angle + turn) for body, angle, turn in zip(bodies, start, turned)]"""
-SCRIPT_IMPORTS = {
-    "pymunk": "import pymunk",
-    "mujoco": f"import mujoco{POSES_FUNCTION}",
-    "mjx": "import jax\nimport mujoco\nfrom mujoco import mjx\n\njax.config.update('jax_enable_x64', True)"
-    + POSES_FUNCTION,
-}
-UNWRAP_LINES = """
-    if apart.ndim == 2:  # an angle may be given without its whole turns
-        apart[:, 2] = np.remainder(apart[:, 2] + np.pi, 2 * np.pi) - np.pi"""
+SCRIPTED = ("pymunk", "mujoco", "mjx")  # Engines for which scripts are written.
 IDEAL_LAW = """the motion with exact constraints. The error of a right method falls with the step"""
 DECLARED_LAW = """the solution of M a = f + J^T F and J a + R F = aref - J' v, with R and aref by MuJoCo's efc_R and
 efc_KBIP"""
@@ -60,10 +47,6 @@ class Block:
     read: str
     expected: Any
 
-    def function(self, number: int) -> str:
-        body = "\n    ".join(line for lines in self.lines for line in lines.splitlines())
-        return f"def run_{number}():\n    {body}\n    return {self.read}\n"
-
 
 def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
     """The script of a case; empty for other engines, or if our code runs between the steps. `number`: number of the
@@ -72,7 +55,7 @@ def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
         return _of_mujoco_alone(case, subject.release)
     mechanism = build(case)
     engine: Any = subject.engine.stepped(mechanism)
-    if engine.name not in SCRIPT_IMPORTS:
+    if engine.name not in SCRIPTED:
         return ""
     try:
         if check == "velocity":
@@ -82,7 +65,7 @@ def write_script(subject: Subject, case: Any, check: str, number: int) -> str:
         blocks = [_motion(engine, *run) for run in _runs(case, mechanism, check, number)]
     except Unsupported:
         return ""
-    return _render_script(engine, blocks, IDEAL_LAW, UNWRAP_LINES)
+    return _render_script(engine, blocks, IDEAL_LAW, turning=True)
 
 
 def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list[tuple[str, Mechanism, float, int]]:
@@ -160,39 +143,15 @@ def _of_mujoco_alone(model: mujoco_alone.RawModel, other: str) -> str:
     return _render_script(None, [block], DECLARED_LAW)
 
 
-def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: str = "") -> str:
-    runs = "\n\n".join(block.function(number) for number, block in enumerate(blocks))
-    rows = "\n".join(
-        f"    ({block.title!r}, run_{number}, {np.asarray(block.expected).tolist()!r}),"
-        for number, block in enumerate(blocks)
-    )
+def _render_script(engine: Engine | None, blocks: Sequence[Block], law: str, turning: bool = False) -> str:
+    """The text of a script. turning: whether angles may differ by whole turns."""
     name, version = "mujoco", "mujoco.__version__"
     if engine is not None and engine.name != name:
         name, version = engine.name, f"version({engine.packages[0]!r})"
-    return f'''"""{name} compared with an independent calculation. The expected result is {law}.
-
-Rows are bodies; columns are x [m], y [m] and the angle [rad], or their rates. Accelerations are listed by coordinate.
-"""
-
-import math
-from importlib.metadata import version
-
-import numpy as np
-{SCRIPT_IMPORTS[name]}
-
-{runs}
-
-print("{name}", {version})
-for title, run, expected in (
-{rows}
-):
-    found, expected = np.array(run()), np.array(expected)
-    apart = found - expected{turning}
-    print(title)
-    print("found   ", found.tolist())
-    print("expected", expected.tolist())
-    print("largest difference", np.abs(apart).max())
-'''
+    templates = environment(Path(__file__).parent)
+    templates.filters["code"] = lambda value: repr(value if isinstance(value, str) else np.asarray(value).tolist())
+    template = templates.get_template("own/script.jinja")
+    return template.render(name=name, version=version, blocks=blocks, law=law, turning=turning)
 
 
 def _mujoco_lines(engine: Any, mechanism: Mechanism, dt: float, steps: int) -> list[str]:

@@ -13,6 +13,7 @@ import pytest
 
 from reports.model.cells import Cell
 from reports.model.ending import BadInput
+from reports.model.fingerprint import OURS, versions_of
 from reports.model.measure import TIMINGS
 from reports.model.outcomes import Loss, Outcome
 from reports.model.tasks import Motion
@@ -52,7 +53,6 @@ def test_a_local_cluster_gives_the_same_rows_and_answers_as_the_pool(tmp_path):
     cells = [Cell(Disc(), toy, 1) for toy in (Toy(), *map(FailingToy, ("abort", "refuse", "raise")))]
     items = [*cells, Motion(Cell(Disc(), Toy(), 2))]
     with connect_cluster("local:2") as cluster, Store(tmp_path / "cells.sqlite") as store:
-        assert cluster is not None
         assert run_into(store, items, supervised=cluster.supervise) == 5
         assert run_into(store, items, supervised=cluster.supervise) == 0
         on_cluster = {row.key: untimed(row) for row in store.get(cells).values()}
@@ -62,10 +62,9 @@ def test_a_local_cluster_gives_the_same_rows_and_answers_as_the_pool(tmp_path):
 
 def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(workers, monkeypatch):
     monkeypatch.setattr(workers.scheduler, "allowed_failures", 1)
-    monkeypatch.setattr(clusters, "CHUNK", 0.0)
+    monkeypatch.setattr(clusters, "CHUNK", 1e-9)
     cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 901)]
     with connect_cluster(workers.scheduler_address) as cluster:
-        assert cluster is not None
         results = {cell.every: result for cell, result, _ in cluster.supervise(end_the_supervisor, cells, 60.0)}
     missing = results.pop(901)
     assert isinstance(missing, Loss)
@@ -77,7 +76,6 @@ def test_an_item_that_ends_every_worker_is_lost_and_the_others_are_not(workers, 
 def test_without_workers_a_run_ends_after_a_timeout_with_a_reason(workers, monkeypatch):
     monkeypatch.setattr(clusters, "WORKERS_WITHIN", 5.0)
     with connect_cluster(workers.scheduler_address) as cluster:
-        assert cluster is not None
         workers.scale(0)
         with pytest.raises(WorkersLost, match=r"no worker.*dask worker"):
             list(cluster.supervise(end_the_supervisor, [Cell(Disc(), SlowToy(seconds=1e4), 1)], 60.0))
@@ -89,19 +87,16 @@ def every_of(cell: Cell) -> int:
 
 def test_an_item_with_other_source_files_or_none_is_not_run(tmp_path, monkeypatch):
     cell = Cell(Disc(), Toy(), 3)
-    assert run_item(every_of, (), pickle.dumps((cell, cell.key))) == 3
-    refused = run_item(every_of, (), pickle.dumps((cell, "of other files")))
-    assert isinstance(refused, Refusal)
-    assert refused.versions.keys() >= {"Python", "numpy", "our source files"}
-    other = clusters._refused(Refusal({**refused.versions, "numpy": "99.0"}), cell, "tcp://there:1")
-    assert f"numpy 99.0 there, {version('numpy')} here" in str(other)
-    theirs = b"(\x8c\x12a_file_of_somebody\x8c\x01f\x93Nt."  # a pickled function of the module `a_file_of_somebody`
-    missing = run_item(str, (), theirs)
-    assert isinstance(missing, Refusal)
-    assert "a_file_of_somebody" in missing.versions["what it would run"]
+    versions = versions_of(cell, folders=OURS)
+    assert versions.keys() >= {"Python", "numpy", "our source files"}
+    assert run_item(every_of, (), pickle.dumps((cell, versions))) == 3
+    refused = run_item(every_of, (), pickle.dumps((cell, {**versions, "numpy": "99.0", "another": "1"})))
+    assert refused == Refusal(f"another missing there, 1 here; numpy {version('numpy')} there, 99.0 here")
+    theirs = b"(\x8c\x12a_file_of_somebody\x8c\x01f\x93}t."  # a pickled function of the module `a_file_of_somebody`
+    assert "a_file_of_somebody" in run_item(str, (), theirs).reason
     (tmp_path / "a_file_of_somebody.py").write_text("def f(item): return 'found'\n")
     monkeypatch.setattr(sys, "path", [*sys.path])
-    assert "function f" in run_item(str, (str(tmp_path),), theirs)  # the module is found in the given folder
+    assert "files of a_file_of_somebody" in run_item(str, (str(tmp_path),), theirs).reason  # it is in the given folder
 
 
 def test_a_missing_scheduler_or_dask_is_reported_in_one_line(monkeypatch):
@@ -117,4 +112,4 @@ def test_a_missing_scheduler_or_dask_is_reported_in_one_line(monkeypatch):
 
 def test_items_are_grouped_into_chunks_by_their_expected_time(monkeypatch):
     monkeypatch.setattr(clusters, "expected_seconds", float)
-    assert chunks([3.0, 1.0, 1.0, 0.5, 2.0]) == [[3.0], [1.0, 1.0], [0.5], [2.0]]
+    assert chunks([3.0, 1.0, 1.0, 0.5, 2.0]) == [[3.0], [1.0, 1.0, 0.5], [2.0]]

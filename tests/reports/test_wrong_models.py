@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -18,6 +19,7 @@ from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reports.model.outcomes import Loss
 from reports.run.supervisor import supervise
 from reports.run.worker import worker_count
+from tests import ROOT
 from tests.wrong.mistakes import NUMBER_KINDS, Mistake, MistakeTrial, Sighting, mistakes, noticed
 
 # Relative mistakes that have to be noticed: 1e-4 by methods that reach rounding, 1e-2 with documented settings.
@@ -31,85 +33,17 @@ LIMIT, CONTROL_LIMIT = 0.15, 1.3
 # velocities over a step, so their rounding error is about 1e-7; the smallest mistake is 1e-4.
 NOTHING = 0.01
 
-# Scenes that are too long for every mistake, or in which right models fail before their end [s].
-DURATIONS = {
-    "point_pendulum": 2.0,  # With the steps of the grid, the phase is lost before the end at 2000 s.
-    # The motion ends before the first singular position, where right models diverge from each other.
-    "n_four_bar_2": 0.3,
-    "n_four_bar_10": 0.3,
-    "n_four_bar_40": 0.2,
-    "pendulum_10": 1.0,
-    "pendulum_100": 0.1,
-    "elliptic_gears": 0.4,
-    "rolling_in_ring": 1.0,
+TABLES = tomllib.loads((ROOT / "tests/wrong/unnoticed.toml").read_text(encoding="utf-8"))
+DURATIONS: dict[str, float] = TABLES["durations"]
+# (scene, engine or "", mistake) of the mistakes without an effect, in this engine or in all engines.
+WITHOUT_EFFECT = {
+    (scene, engine, mistake)
+    for entry in TABLES["without_effect"]
+    for engine in entry.get("engines", [""])
+    for scene, mistake in entry["mistakes"]
 }
-
-ALONG_THE_AXLE = (
-    "every point across a blade has the same velocity across it: the place along an axle is no number of it"
-)
-STEADY = "this body turns at a constant rate, or not at all, so that no force depends on its inertia"
-FALLING = "in the time that is run these links fall without turning yet"
-ALONG_THE_SLOT = "a line has no places: its point, moved along it, gives the same line"
-SLIDER = (
-    "the slider can't turn, so where the slot holds it changes no motion; and reactions are read from accelerations, "
-    "at the place where the mechanism has the slot"
-)
-NO_TORQUE = (
-    "the slider can't turn, so where the slot holds it changes no motion, only the torque that keeps it level; that is "
-    "zero here, and the one torque there is, so that its error has no scale and is not measured"
-)
-PRESCRIBED = "pymunk moves this body as prescribed and has no number for its mass"
-
-# (scene, mistake) -> the reason why this mistake has no effect.
-UNNOTICEABLE: dict[tuple[str, str], str] = {
-    ("driven_four_bar", "inertia crank"): STEADY,
-    ("driven_slider_crank", "inertia crank"): STEADY,
-    ("driven_slider_crank", "inertia slider"): STEADY,
-    ("free_slider_crank", "inertia slider"): STEADY,
-    ("elliptic_gears", "inertia first"): STEADY,
-    ("pinned_body_free", "inertia body"): STEADY,
-    **{("pendulum_100", f"inertia link {n}"): FALLING for n in (51, 100)},
-    **{("n_four_bar_2", f"inertia coupler {n}"): STEADY for n in (0, 1)},
-    **{("n_four_bar_10", f"inertia coupler {n}"): STEADY for n in (9,)},
-    **{("n_four_bar_40", f"inertia coupler {n}"): STEADY for n in (39,)},
-    **{(f"{kind}_slider_crank", "point guide first_point x"): ALONG_THE_SLOT for kind in ("driven", "free")},
-    **{(scene, "point skate second_point y"): ALONG_THE_AXLE for scene in ("sleigh", "sleigh_backwards")},
-    **{("car_and_trailer", f"point {body}'s axle second_point y"): ALONG_THE_AXLE for body in ("car", "trailer")},
-    ("cart", "point axle second_point y"): ALONG_THE_AXLE,
-    **{("cart", f"point {side} caster's wheel second_point y"): ALONG_THE_AXLE for side in ("left", "right")},
-}
-# (scene, engine, mistake) -> the reason why this mistake has no effect in this engine.
-UNNOTICEABLE_IN: dict[tuple[str, str, str], str] = {
-    ("driven_four_bar", "pymunk", "mass crank"): PRESCRIBED,
-    ("driven_slider_crank", "pymunk", "mass crank"): PRESCRIBED,
-    ("elliptic_gears", "pymunk", "mass first"): PRESCRIBED,
-    **{
-        (f"{kind}_slider_crank", engine, "point guide second_point x"): SLIDER
-        for kind in ("driven", "free")
-        for engine in ("pymunk", "mujoco")
-    },
-    ("free_slider_crank", "lagrange", "point guide second_point x"): NO_TORQUE,
-}
-
-# Reasons why the bounds from theory do not detect some mistakes. The comparison with the baseline detects these
-# mistakes, since without a mistake only rounding changes an error.
-FORCES = "the mistake shows in forces alone, and in a part of them that is smaller than what theory allows this order"
-COARSE = "of first order: at the finest step that is run its own error is as large as what the mistake makes"
-POLYGON = "a body that is not round is a polygon here, and its blows are larger than what the mistake makes"
-PRESSED = "pins already hold the gears apart: how hard they press is a matter of softness, of which nothing is promised"
-# Some mistakes with the reason SWEPT do not change the digits that the baseline compares.
-SWEPT = "its sweeps do not converge on so many joints, so that its own error is larger than what the mistake makes"
-
-LARGER: dict[tuple[str, str], str] = {
-    **{(scene, "pymunk extended"): SWEPT for scene in ("pendulum_100", "n_four_bar_40")},
-    ("driven_slider_crank", "pymunk tuned"): FORCES,
-    ("pinned_body_free", "pymunk tuned"): FORCES,
-    **{(scene, f"{name} tuned"): COARSE for scene in ("car_and_trailer", "cart") for name in ("pymunk", "mujoco")},
-    ("free_slider_crank", "pymunk tuned"): COARSE,
-    **{("elliptic_gears", f"{name} tuned"): PRESSED for name in ("pymunk", "mujoco")},
-    **{(f"rolling_{curve}", "pymunk tuned"): POLYGON for curve in ("ellipse", "cam", "incline")},
-    **{(scene, "pymunk tuned"): SWEPT for scene in ("pendulum_100", "n_four_bar_10", "n_four_bar_40")},
-}
+# (scene, method) -> the kind of reason why the bounds from theory do not detect some mistakes.
+LARGER = {(scene, method): kind for kind, entry in TABLES["larger"].items() for scene, method in entry["cases"]}
 
 
 @dataclass(frozen=True)
@@ -131,10 +65,9 @@ def short(scene: Scene) -> Scene:
     return replace(cast(Any, scene), duration=duration, **horizon_field)
 
 
-def excuse(scene: Scene, engine: Engine, mistake: Mistake) -> str:
-    """The reason why a mistake has no effect, or "" if it must be detected."""
-    expected = UNNOTICEABLE.get((scene.name, str(mistake)), "")
-    return expected or UNNOTICEABLE_IN.get((scene.name, engine.name, str(mistake)), "")
+def is_excused(scene: Scene, engine: Engine, mistake: Mistake) -> bool:
+    """Whether a mistake has no effect, so that it can't be detected."""
+    return any((scene.name, name, str(mistake)) in WITHOUT_EFFECT for name in ("", engine.name))
 
 
 @cache
@@ -168,7 +101,9 @@ def representative(trials: Iterable[MistakeTrial], each: int = 1) -> list[Mistak
     out = []
     for trial in trials:
         counts = met.setdefault(trial.engine.name, Counter())
-        last = {mistake.kind: mistake for mistake in trial.mistakes if not excuse(trial.scene, trial.engine, mistake)}
+        last = {
+            mistake.kind: mistake for mistake in trial.mistakes if not is_excused(trial.scene, trial.engine, mistake)
+        }
         rarest = sorted(last, key=lambda kind: (counts[kind], NUMBER_KINDS.index(kind)))[:each]
         counts.update(rarest)
         out.append(replace(trial, mistakes=tuple(last[kind] for kind in rarest)))
@@ -221,11 +156,11 @@ def unseen(trial: MistakeTrial, findings: Findings) -> list[str]:
     assert not isinstance(result, Loss), result
     out = []
     for mistake, sighting in result.items():
-        if excuse(trial.scene, trial.engine, mistake):
+        if is_excused(trial.scene, trial.engine, mistake):
             assert sighting.shift < NOTHING * trial.relative, f"{mistake} changes an error by {sighting.shift:.1g}"
             continue
         # The comparison with the baseline must detect the mistake even if the bounds from theory do not.
-        drowned = LARGER.get((trial.scene.name, trial.method)) == SWEPT
+        drowned = LARGER.get((trial.scene.name, trial.method)) == "swept"
         assert sighting.changed or drowned, f"{mistake} changes nothing, so it needs a reason of its own"
         if not sighting.check:
             out.append(str(mistake))
@@ -251,7 +186,6 @@ def test_every_number_that_is_wrong_in_an_engine_alone_is_noticed(all_findings: 
 def test_every_reason_names_a_real_mistake_and_method() -> None:
     possible = {(scene.name, str(mistake)) for scene in SCENES for mistake in all_mistakes(scene)}
     assert set(LONGER) <= {scene.name for scene in SCENES}
-    assert set(UNNOTICEABLE) <= possible
-    assert {(scene, mistake) for scene, _, mistake in UNNOTICEABLE_IN} <= possible
-    assert {engine for _, engine, _ in UNNOTICEABLE_IN} <= {trial.engine.name for trial in EVERYTHING}
+    assert {(scene, mistake) for scene, _, mistake in WITHOUT_EFFECT} <= possible
+    assert {engine for _, engine, _ in WITHOUT_EFFECT} <= {"", *(trial.engine.name for trial in EVERYTHING)}
     assert set(LARGER) <= {(trial.scene.name, trial.method) for trial in EVERYTHING}
