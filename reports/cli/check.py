@@ -94,20 +94,11 @@ def check(
     request = replace(request, everything=all_settings, search=fix_to is not None, apply=str(apply or ""))
     _refuse_bad(request, files, everything, force)
     worker.start_early(*EARLY)
-    begin, is_folder = monotonic(), Path(model).is_dir()
+    begin = monotonic()
     answers = _answers([replace(request, word=label) for label in _models(model)], limit)
-    if is_folder and as_json:
-        _say(json.dumps(many.document(answers), indent=1, allow_nan=False))
-    elif is_folder:
-        from reports.cli.terminal import Terminal, print_table
-
-        print_table(
-            Terminal(MAX_WIDTH), f"Models of {model}", many.FOLDER_HEADER, many.rows(answers), len(many.FOLDER_HEADER)
-        )
-    else:
-        _print(answers[0][1], as_json, everything)
+    _print(model, answers, as_json, everything)
     _write(model, answers, files, monotonic() - begin)
-    _refuse_missed(answers, is_folder)
+    _refuse_missed(answers, Path(model).is_dir())
 
 
 def _refuse_missed(answers: Answers, is_folder: bool) -> None:
@@ -221,9 +212,17 @@ def _write(model: str, answers: Answers, files: Mapping[str, Path | None], secon
     write_whole(texts, "give another file")
 
 
-def _print(answer: CheckReport | Refused, as_json: bool, everything: bool) -> None:
+def _print(model: str, answers: Answers, as_json: bool, everything: bool) -> None:
     from reports.check import rendering
 
+    if Path(model).is_dir():
+        if as_json:
+            return _say(json.dumps(many.document(answers), indent=1, allow_nan=False))
+        from reports.cli.terminal import Terminal, print_table
+
+        left = len(many.FOLDER_HEADER)
+        return print_table(Terminal(MAX_WIDTH), f"Models of {model}", many.FOLDER_HEADER, many.rows(answers), left)
+    answer = answers[0][1]
     if isinstance(answer, Refused):
         raise BadInput(answer.sentence)
     if as_json:

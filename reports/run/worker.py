@@ -173,7 +173,7 @@ def process_start() -> Iterator[None]:
 def last_words(folder: Path, pid: int | None) -> str:
     with suppress(OSError):
         text = (folder / f"{pid}.log").read_text(encoding="utf-8", errors="replace")
-        lines = [line.strip() for line in text.splitlines() if line.strip()]
+        lines = list(filter(None, map(str.strip, text.splitlines())))
         first = next((at for at, line in enumerate(lines) if "abort" in line.lower() or "error" in line.lower()), 0)
         # Chipmunk prints a line that ends with a colon, and below it the reason and the failed condition.
         count = 3 if lines and lines[first].endswith(":") else 1
@@ -182,13 +182,7 @@ def last_words(folder: Path, pid: int | None) -> str:
 
 
 PARENT_SEES_CPU = cpu_time(os.getpid()) is not None  # Whether the parent can read the CPU time of a worker.
-
-
-class CpuDeadline:
-    """The CPU time at which the current job is ended, or infinity between jobs."""
-
-    def __init__(self) -> None:
-        self.end = float("inf")
+_deadline = [float("inf")]  # The CPU time at which `_watch` ends the current job, or infinity between jobs.
 
 
 def work(connection: Connection, folder: str, limit: float, wall: float) -> None:
@@ -213,8 +207,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
     if hidden := import_module(GUARD).clash():
         print(hidden, file=sys.stderr, flush=True)
         os._exit(1)
-    clock = CpuDeadline()
-    threading.Thread(target=_watch, args=(clock,), daemon=True).start()
+    threading.Thread(target=_watch, daemon=True).start()
     connection.send_bytes(READY)
     stays, number = True, os.getpid()
     while stays:
@@ -223,7 +216,7 @@ def work(connection: Connection, folder: str, limit: float, wall: float) -> None
         except (EOFError, OSError):
             break
         os.ftruncate(2, 0)  # So the log contains only the output of this job.
-        stays, answer = _answer(job, clock, limit, wall)
+        stays, answer = _answer(job, limit, wall)
         if os.getpid() != number:  # A process that the job has forked must not answer.
             os._exit(0)
         connection.send_bytes(pickle.dumps((stays, answer)))
@@ -252,19 +245,19 @@ def _redirect(folder: Path) -> None:
     os.close(log)
 
 
-def _watch(clock: CpuDeadline) -> None:
+def _watch() -> None:
     """End the process when the parent has ended, or at the CPU deadline if the parent can't read the CPU time. It runs
     in a thread."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     while parent.is_alive():
         parent.join(None if PARENT_SEES_CPU else CHECK_INTERVAL)
-        if not PARENT_SEES_CPU and time.process_time() > clock.end:
+        if not PARENT_SEES_CPU and time.process_time() > _deadline[0]:
             os._exit(SPENT)
     os._exit(1)
 
 
-def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[bool, bytes]:
+def _answer(job: bytes, limit: float, wall: float) -> tuple[bool, bytes]:
     """Run a job; return (whether the state of the process is unchanged, the pickled result or Loss)."""
     try:
         # An engine may be imported here, which does not count as CPU time of the job or as a change of the process.
@@ -273,7 +266,7 @@ def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[
         return False, pickle.dumps(Loss(Outcome.LOST, f"a worker can't read it: {describe(error)}"))
     try:
         before, start = _process_state(), time.process_time()
-        with _timers(clock, limit, wall):
+        with _timers(limit, wall):
             result = function(item)
         if time.process_time() - start > limit:
             result = out_of_time(limit)
@@ -287,16 +280,16 @@ def _answer(job: bytes, clock: CpuDeadline, limit: float, wall: float) -> tuple[
 
 
 @contextmanager
-def _timers(clock: CpuDeadline, limit: float, wall: float) -> Iterator[None]:
+def _timers(limit: float, wall: float) -> Iterator[None]:
     """Set a system timer that ends the process even in native code that never returns to the interpreter."""
-    clock.end = time.process_time() + limit
+    _deadline[0] = time.process_time() + limit
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_REAL, 2 * wall)  # The parent should end the job after `wall`.
     try:
         yield
     finally:
-        clock.end = float("inf")
+        _deadline[0] = float("inf")
         if hasattr(signal, "setitimer"):
             for timer in (signal.ITIMER_PROF, signal.ITIMER_REAL, signal.ITIMER_VIRTUAL):
                 signal.setitimer(timer, 0)

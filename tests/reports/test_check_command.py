@@ -22,7 +22,6 @@ from tests.reports.test_check import FOUR_BAR, PENDULUM
 from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
-WRITTEN = ("html", "junit", "markdown")  # options with the path of a report
 
 
 def test_a_missed_tolerance_gives_exit_status_1_and_report_files(here, capfd):
@@ -61,33 +60,6 @@ def test_a_script_that_exits_or_never_ends_is_reported_in_one_line(here, capfd, 
     (line,) = [line for line in err.splitlines() if line.startswith("crosscheck: ")]
     assert all(part in line for part in (*sentence.split(" ... "), "script.py:space"))
     assert "Traceback" not in err
-
-
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        (("check", "a.xml", "--duration", -1), "--duration is -1"),
-        (("check", "a.xml", "--tolerance", "nan"), "--tolerance is nan"),
-        (("check", "a.xml", "--step", 5), "--step is 5"),
-        (("check", "a.xml", "--html", "r.html", "--markdown", "./r.html"), "--html and --markdown name one file twice"),
-        (("check", "a.xml", "--apply", "a.xml"), "give another --apply, or --force"),
-        *((("check", "a.xml", "--force", f"--{name}", "b/../a.xml"), "which is the model") for name in WRITTEN),
-        (("export", "pendulum_1", "--to", "usd"), "--to is 'usd'; it must be one of mjcf, pymunk, urdf"),
-        (("export", "pendulum_1", "--variant", "best"), "--variant is 'best'"),
-        (("export", "pendulum_1", "--step", 0), "--step is 0"),
-        (("export", "free_four_bar", "--to", "urdf"), "a URDF can't hold"),
-        (("export", "sleigh", "--to", "pymunk", "--variant", "tuned"), "pymunk has no such joint"),
-        (("export", "penduum_1"), "did you mean"),
-        (("view", "penduum_1"), "did you mean"),
-    ],
-)
-def test_bad_arguments_are_reported_in_one_line_and_replace_no_file(here, capfd, words, sentence):
-    (here / "a.xml").write_text("mine")
-    assert call(*words) == 2
-    assert [(path.name, path.read_text()) for path in here.iterdir()] == [("a.xml", "mine")]
-    out, err = capfd.readouterr()
-    assert sentence in err.splitlines()[-1]
-    assert out == ""
 
 
 def test_an_exported_script_runs_without_the_suite_and_follows_the_exact_motion_in_its_comments(here):

@@ -129,42 +129,12 @@ def test_names_with_markup_are_escaped_on_the_site():
     }
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("run", "free_four_bar", "--every", "3000000000"),
-        ("run", "free_four_bar", "--step", "1e-320"),
-        ("view", "free_four_bar", "--variant", "nope"),
-        ("animate", "free_four_bar", "--every", "1" + 20 * "0"),
-        ("check", "one.xml", "--markdown", ""),
-        ("shapes", "/dev/zero"),
-        ("shapes", "red\x1b[31m\x07\u202e.csv"),
-        ("check", "one.xml", "--html", "-"),
-        ("check", "one.xml", "--apply", "-"),
-        ("report", "--results", "/dev/null/folder"),
-    ],
-)
-def test_input_that_once_caused_a_traceback_is_refused_in_one_line(words, here, capfd):
-    assert call(*words) == REFUSED
-    err = capfd.readouterr().err
-    assert err.startswith("crosscheck: ")
-    assert err.count("\n") == 1
-    assert err[:-1].isprintable()
-    assert list(here.iterdir()) == []
-
-
 def test_a_file_named_minus_is_the_standard_output(here, capfd):
     assert call("export", "free_four_bar", "--out", "-") == FINE
     written = capfd.readouterr().out
     assert call("export", "free_four_bar") == FINE
     assert capfd.readouterr().out == written
     assert list(here.iterdir()) == []
-
-
-def test_a_folder_of_results_that_is_a_file_is_refused(here, capfd):
-    (here / "file").write_text("mine")
-    assert call("show", "free_four_bar", "--results", "file") == REFUSED
-    assert "'file', and file is a file; give a folder" in capfd.readouterr().err
 
 
 # Numbers without a motion

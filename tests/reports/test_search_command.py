@@ -14,14 +14,14 @@ import pytest
 from engines import Engine, exudyn, method_name, mjx, mujoco, pymunk
 from engines.registry import INSTALLED, VARIANTS
 from reports.cli.options import SEARCH, STORE
-from reports.model.ending import FINE, REFUSED
+from reports.model.ending import FINE
 from reports.run.store import Store
 from reports.search import mujoco_alone, plan, relations
 from reports.search.parts import Recipe
 from reports.search.scripts import write_script
 from reports.search.shrinking import shrink_case
 from reports.search.subjects import Adapted, Alone
-from tests.reports.test_command_line import call, here, one_line
+from tests.reports.test_command_line import call, here
 
 __all__ = ["here"]
 FEW = ("search", "--engine", "mujoco", "--variant", "alone", "--kinds", "joint", "--cases", "4", "--workers", "1")
@@ -76,25 +76,6 @@ def test_a_case_that_ends_its_process_is_a_finding_and_the_other_results_are_sto
     assert re.search(r"aborted +│ +[1-4] ", reported), reported
     assert "4 cases were asked" in reported
     assert "4 cases are stored" in reported
-
-
-@pytest.mark.parametrize(
-    ("words", "names"),
-    [
-        (("--seconds", "-1"), "--seconds"),
-        (("--fresh",), "--seconds"),
-        (("--fresh", "--seconds", "5", "--seed", "3"), "--seed"),
-        (("--kinds", "pin,glue"), "--kinds"),
-        (("--oracles", "tea"), "--oracles"),
-        (("--engine", "havok"), "havok"),
-        (("--release", "3.6.0", "--engine", "pymunk"), "--release"),
-        (("--release", "latest"), "latest"),
-    ],
-)
-def test_invalid_options_are_refused_in_one_line(words, names, here, capfd):
-    assert call("search", "--cases", "1", *words) == REFUSED
-    assert names in one_line(capfd.readouterr().err)
-    assert not (here / "crosscheck-results").exists()
 
 
 def test_fresh_seeds_are_drawn_until_the_time_limit_and_stored(here, capfd):
