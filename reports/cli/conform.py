@@ -7,6 +7,7 @@ name, since the engine may not be picklable.
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -65,23 +66,20 @@ def verdicts(results: Iterator[tuple[ConformanceCase, ConformanceResult]]) -> It
     """Yield (status, line) for each check, and for each distinct reason why a check did not apply."""
     printed: set[str] = set()
     for check, group in groupby(results, key=lambda pair: pair[0].check):
-        answers = list(group)
-        failed, holding = _with_status(answers, "fails"), _with_status(answers, "holds")
+        by_status: dict[Status, list[tuple[ConformanceCase, ConformanceResult]]] = defaultdict(list)
+        for pair in group:
+            by_status[pair[1].status].append(pair)
+        failed, holding, count = by_status["fails"], by_status["holds"], sum(map(len, by_status.values()))
         if failed:
             yield "fails", f"{_places(failed)}{failed[0][1].sentence}"
         elif holding:
-            share = "" if not check.worlds else f" ({len(holding)} of {len(answers)} mechanisms)"
-            yield "holds", f"{check.name}{share}"
+            yield "holds", check.name + (f" ({len(holding)} of {count} mechanisms)" if check.worlds else "")
         for status in ("not supported", "not asked"):
-            for case, result in _with_status(answers, status):
+            for case, result in by_status[status]:
                 line = f"{_places([(case, result)])}{result.sentence}"
                 if line not in printed:
                     yield status, line if holding or failed or case.world is None else f"{check.name}: {line}"
                 printed.add(line)
-
-
-def _with_status(answers: Answers, status: str) -> list[tuple[ConformanceCase, ConformanceResult]]:
-    return [(case, result) for case, result in answers if result.status == status]
 
 
 def _places(answers: Answers) -> str:
@@ -118,7 +116,8 @@ def _cases(named: Named, index: int) -> tuple[ConformanceCase, ...]:
 def ask(question: Question) -> tuple[ConformanceResult, ...]:
     """The results of a check in each mechanism. A worker calls this function."""
     results = []
-    for number, case in enumerate(_of_check(_cases(question.named, question.index), question.check)):
+    members = (case for case in _cases(question.named, question.index) if case.check.name == question.check)
+    for number, case in enumerate(members):
         Path(question.notes, question.check).write_text(str(number), encoding="utf-8")
         results.append(case.result())
     return tuple(results)
@@ -129,20 +128,19 @@ def asked(
 ) -> Iterator[tuple[Engine, Iterator[tuple[ConformanceCase, ConformanceResult]]]]:
     """Yield each named engine with the results of its checks in order. Raises BadInput and WorkersLost. limit: CPU
     seconds of a check without the time to build models. One worker runs all checks, which share their runs."""
-    for number, engine in enumerate(named.engines()):
-        yield engine, _answers(named, number, engine, limit + MODELS * engine.build_time)
+    for index, engine in enumerate(named.engines()):
+        yield engine, _answers(named, index, tuple(cases(engine)), limit + MODELS * engine.build_time)
 
 
 def _answers(
-    named: Named, index: int, engine: Engine, limit: float
+    named: Named, index: int, every: Sequence[ConformanceCase], limit: float
 ) -> Iterator[tuple[ConformanceCase, ConformanceResult]]:
-    every = tuple(cases(engine))
-    names = [name for name, _ in groupby(case.check.name for case in every)]
+    by_check = {name: tuple(members) for name, members in groupby(every, key=lambda case: case.check.name)}
+    waiting, answers = list(by_check), dict[str, Answers]()
     with temporary_folder() as notes:
-        questions = [Question(named, index, name, str(notes)) for name in names]
-        answers: dict[str, Answers] = {}
+        questions = [Question(named, index, name, str(notes)) for name in by_check]
         for question, results, earlier in supervise(ask, questions, limit, workers=1):
-            members = _of_check(every, question.check)
+            members = by_check[question.check]
             if isinstance(results, Loss):
                 note = Path(notes, question.check)  # The case that ran when the worker ended.
                 case = members[int(note.read_text(encoding="utf-8"))] if note.is_file() else members[0]
@@ -153,13 +151,9 @@ def _answers(
                 answers[question.check] = [_failed(members[0], sentence)]
             else:
                 answers[question.check] = list(zip(members, results, strict=True))
-            while names and names[0] in answers:  # A repeated check answers later than the checks after it.
-                yield from answers[names.pop(0)]
+            while waiting and waiting[0] in answers:  # A repeated check answers later than the checks after it.
+                yield from answers[waiting.pop(0)]
 
 
 def _failed(case: ConformanceCase, words: str) -> tuple[ConformanceCase, ConformanceResult]:
     return case, ConformanceResult("fails", f"{case.check.name}: {case.check.requirement} {words}")
-
-
-def _of_check(every: Sequence[ConformanceCase], name: str) -> list[ConformanceCase]:
-    return [case for case in every if case.check.name == name]
