@@ -104,9 +104,9 @@ class _Draw(Integers):
         )
         length, mass, time = (self.whole(-self._decades, self._decades) for _ in range(3))
         decades = length, mass, time
-        links = [self._link(part.parent, index, parts) for index, part in enumerate(parts, start=1)]
+        links = [self._link(part.parent, index) for index, part in enumerate(parts, start=1)]
         for _ in range(self.whole(0, DRAWN_LOOPS)):
-            links.append(self._link(*self._pair(count), parts))
+            links.append(self._link(*self._pair(count)))
         links = [part for link in links for part in _with_pins(link)]
         standing = Standing(Recipe(parts, (), pull, decades))
         kept_links, held_joints = self._independent(standing, links)
@@ -140,48 +140,46 @@ class _Draw(Integers):
         first, second = self.whole(0, count), self.whole(1, count)
         return (first, second) if first != second else (0, second)
 
-    def _link(self, first: int, second: int, parts: Sequence[RecipeBody]) -> RecipeLink:
+    def _link(self, first: int, second: int) -> RecipeLink:
         # Pins are drawn more often, since they connect the bodies to trees.
         more_pins = ["pin"] * max(1, len(self._kinds) // 3)
         choice = (*self._kinds, *more_pins) if "pin" in self._kinds else self._kinds
         kind = choice[self.whole(0, len(choice) - 1)]
-        at, turn = self.two(6), self.whole(-10, 10)
+        link = RecipeLink(kind, first, second, self.two(6), self.whole(-10, 10))
         if self.chance(6):
-            at = (0, 0)  # many adapters treat the centre of mass as a special case
-        along, rims = 0, ()
-        if kind == "drive":
-            along = self.whole(-6, 6)
-        elif kind == "slot":
-            along = self.whole(-8, 8)
-        elif kind == "roll":
-            pair = RIM_PAIRS[self.whole(0, len(RIM_PAIRS) - 1)]
-            rims = tuple(Rim(shape, self.whole(-3, 0), self.whole(-2, 2), self.whole(-10, 10)) for shape in pair)
-            if pair[0] == "ring":
-                rims = (Rim("ring", rims[1].size + self.whole(1, 3)), rims[1])
-            rims = tuple(rim if rim.shape == "ellipse" else Rim(rim.shape, rim.size) for rim in rims)
-        elif kind not in FIRST_KINDS:
-            return self._further(kind, first, second, at, turn)
-        return RecipeLink(kind, first, second, at, turn, along, rims)
+            link = replace(link, at=(0, 0))  # many adapters treat the centre of mass as a special case
+        if kind == "roll":
+            return replace(link, rims=self._rims())
+        if kind in ("drive", "slot"):
+            most = 6 if kind == "drive" else 8
+            return replace(link, more=self.whole(-most, most))
+        return link if kind in FIRST_KINDS else self._further(link)
 
-    def _further(self, kind: str, first: int, second: int, at: tuple[int, int], turn: int) -> RecipeLink:
+    def _rims(self) -> tuple[Rim, Rim]:
+        pair = RIM_PAIRS[self.whole(0, len(RIM_PAIRS) - 1)]
+        first, second = (Rim(shape, self.whole(-3, 0), self.whole(-2, 2), self.whole(-10, 10)) for shape in pair)
+        if first.shape == "ring":
+            first = Rim("ring", second.size + self.whole(1, 3))
+        first, second = (rim if rim.shape == "ellipse" else Rim(rim.shape, rim.size) for rim in (first, second))
+        return first, second
+
+    def _further(self, link: RecipeLink) -> RecipeLink:
         """Draw a link of a kind outside of FIRST_KINDS; its distance, ratio or force is not zero."""
         amount = self.whole(1, 8) * (1 if self.chance(2) else -1)
         strength, rest = self.whole(-2, 4), self.whole(-10, 10)
-        if kind in ("rod", "gear", "force", "torque"):
-            return RecipeLink(kind, first, second, at, turn, amount)
+        kind = link.kind
         if kind == "weld":
-            return RecipeLink(kind, first, second, at)
-        if kind == FOLD and first:
+            return replace(link, turn=0)
+        link = replace(link, more=amount)
+        if kind in ("rod", "gear", "force", "torque"):
+            return link
+        if kind == FOLD and link.first:
             parallel = self.chance(2)
             strength, far = self.whole(2, 5), self.two(6)
-            return RecipeLink(
-                kind, first, second, at, 0, amount, strength=strength, rest=0 if parallel else rest, far=far
-            )
+            return replace(link, turn=0, strength=strength, rest=0 if parallel else rest, far=far)
         if kind in SINGULAR_KINDS:
-            return RecipeLink(TOGGLE, first, second, at, turn, amount, strength=self.whole(3, 5))
-        return RecipeLink(
-            kind, first, second, at, turn, amount, strength=strength, rest=rest if "spring" in kind else 0
-        )
+            return replace(link, kind=TOGGLE, strength=self.whole(3, 5))
+        return replace(link, strength=strength, rest=rest if "spring" in kind else 0)
 
 
 def _with_pins(link: RecipeLink) -> tuple[RecipeLink, ...]:
