@@ -8,6 +8,7 @@ import json
 import re
 import subprocess
 import sys
+import tomllib
 import types
 import xml.etree.ElementTree as xml
 from pathlib import Path
@@ -129,65 +130,21 @@ def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(here, monkeypat
     assert not list(here.iterdir())
 
 
-BODY = '<body name="{0}" pos="{1} 0 0"><joint axis="0 1 0"/><geom size=".1" contype="0" conaffinity="0"/></body>'
-BAD = {
-    "no_inertia.xml": (
-        '<mujoco><worldbody><body><joint/><inertial pos="0 0 0" mass="1" diaginertia="0 0 0"/></body></worldbody>'
-        "</mujoco>",
-        "MuJoCo can't compile it",
-    ),
-    "open_loop.xml": (
-        FOUR_BAR.replace("</mujoco>", '<keyframe><key qpos=".3 0 0"/></keyframe></mujoco>'),
-        "MuJoCo pulls it together in its first steps; give a keyframe in which it is closed",
-    ),
-    "many.xml": (
-        f"<mujoco><worldbody>{''.join(BODY.format(f'b{i}', i) for i in range(1_000))}</worldbody></mujoco>",
-        "it has 1000 moving bodies; the judge takes up to 200",
-    ),
-    "hits.xml": (
-        '<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/><body pos="0 0 .15"><joint type="slide" '
-        'axis="0 0 1"/><geom name="ball" size=".1"/></body></worldbody></mujoco>',
-        "geom 'floor' touches geom 'ball' at 0.1",
-    ),
-    "raises.py:space": ("raise RuntimeError('no\\nspace')", "raises.py raised RuntimeError in line 1: no space"),
-    "nothing.py:space": ("x = 1", "it has no 'space'"),
-    "drives.py:space": (
-        "import pymunk\nspace = pymunk.Space()\nbody = pymunk.Body(1, 1)\nbody.angular_velocity = 1\n"
-        "space.add(body, *[pymunk.SimpleMotor(space.static_body, body, rate) for rate in (1, 2)])",
-        "no velocities satisfy SimpleMotor 1, SimpleMotor 2 together",
-    ),
-    "far.xml": (
-        '<mujoco><worldbody><body name="a"><joint/><geom size=".1" pos=".2 0 0"/></body></worldbody>'
-        '<keyframe><key qpos="1e300"/></keyframe></mujoco>',
-        "a: its angle at t = 0 is 1e+300 rad; floating point numbers of that size tell no angle",
-    ),
-    "not_a_number.xml": (
-        '<mujoco><worldbody><body><joint/><geom size=".1" pos=".2 0 0"/></body></worldbody>'
-        '<keyframe><key qpos="nan"/></keyframe></mujoco>',
-        "qpos of joint 0 is nan at the start; it must be a finite number",
-    ),
-    "no_step.xml": (
-        FOUR_BAR.replace('"0.002"', '"0"'),
-        "the model's own step is 0 s; it must be a finite time above zero",
-    ),
-    "backwards.py": (f"{PENDULUM}\nspace = make()\nspace.step(-0.01)", "the model's own step is -0.01 s; it must be"),
-    "missing.xml": (None, "there is no such file"),
-    "picture.png": (None, "is no model; give"),
-}
+BAD = tomllib.loads(Path(__file__).with_name("bad_models.toml").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("word", BAD)
 def test_a_bad_model_is_refused_in_one_sentence(tmp_path, word):
-    text, sentence = BAD[word]
-    file = tmp_path / word.split(":")[0]
-    if text is not None:
-        file.write_text(text)
+    bad, name = BAD[word], word.split(":")[0]
+    if "text" in bad:
+        text = {"FOUR_BAR": FOUR_BAR, "PENDULUM": PENDULUM}.get(bad["text"], bad["text"])
+        (tmp_path / name).write_text(text.replace(*bad.get("replaced", ("", ""))))
     answer = run_check(CheckRequest(word, str(tmp_path), 0.5, 1e-4))
     assert isinstance(answer, Refused)
-    assert sentence in answer.sentence
+    assert bad["sentence"] in answer.sentence
     assert "\n" not in answer.sentence
     assert len(answer.sentence) < 600
-    assert word.split(":")[0] in answer.sentence
+    assert name in answer.sentence
 
 
 def test_a_script_can_use_files_and_modules_in_its_folder(tmp_path):
@@ -214,7 +171,7 @@ def test_a_script_can_use_files_and_modules_in_its_folder(tmp_path):
 
 @pytest.mark.parametrize(("element", "sentence"), [("rain", "--without is 'rain'"), ("contact", "")])
 def test_elements_are_switched_off_by_their_kind_and_an_unknown_kind_is_refused(tmp_path, element, sentence):
-    (tmp_path / "hits.xml").write_text(BAD["hits.xml"][0])
+    (tmp_path / "hits.xml").write_text(BAD["hits.xml"]["text"])
     answer = run_check(CheckRequest("hits.xml", str(tmp_path), 0.3, 1e-1, (element,)))
     if sentence:
         assert isinstance(answer, Refused)
