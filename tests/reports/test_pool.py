@@ -183,17 +183,6 @@ def test_with_killed_workers_every_row_is_returned_once_and_correct(monkeypatch)
     assert killer.kills > 2
 
 
-def start_script(path: Path, text: str) -> subprocess.Popen[bytes]:
-    script = path / "script.py"
-    script.write_text(text, encoding="utf-8")
-    return subprocess.Popen(
-        [sys.executable, script, path],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-    )
-
-
 ORPHANS = """
 import sys
 from reports.model.cells import Cell
@@ -209,44 +198,19 @@ if __name__ == "__main__":
 
 def test_workers_end_when_their_parent_is_gone(tmp_path):
     """One worker sleeps, and native code of the other worker holds the interpreter lock."""
-    process = start_script(tmp_path, ORPHANS)
+    script = tmp_path / "script.py"
+    script.write_text(ORPHANS, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen([sys.executable, script, tmp_path], env=environment, stderr=subprocess.DEVNULL)
     kinds = ("sleep", "native spin")
     try:
         wait_until(lambda: all((tmp_path / f"{kind} is there").exists() for kind in kinds))
     finally:
         process.kill()
-        process.communicate()
+        process.wait()
     for kind in kinds:
         with (tmp_path / kind).open("w", encoding="utf-8") as file:
             wait_until(lambda file=file: is_free(file))
-
-
-RESUMED = """
-import sys
-from pathlib import Path
-from reports.model.cells import Cell
-from reports.run.running import run_into
-from reports.run.store import Store
-from tests.toys import Disc, FailingToy, Toy
-
-if __name__ == "__main__":
-    cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 3, 4)] + [Cell(Disc(), FailingToy("hang"), 1)]
-    with Store(Path(sys.argv[1]) / "cells.sqlite") as store:
-        run_into(store, cells, done=lambda row: print(row.every, flush=True), workers=2)
-"""
-
-
-def test_after_a_kill_the_next_run_continues_where_it_stopped(tmp_path):
-    process = start_script(tmp_path, RESUMED)
-    assert process.stdout is not None
-    with process.stdout:
-        for _ in range(4):
-            assert process.stdout.readline().strip()
-    process.kill()
-    # The end must not wait for the hanging worker, which has a limit of eleven minutes.
-    assert process.wait(timeout=60) != 0
-    with Store(tmp_path / "cells.sqlite") as store:
-        assert missing([Cell(Disc(), Toy(), every) for every in (1, 2, 3, 4)], store) == ()
 
 
 def test_only_missing_cells_are_run_and_timed_out_ones_only_with_a_larger_limit(tmp_path):
