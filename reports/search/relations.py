@@ -69,7 +69,7 @@ def relation_errors(engine: Engine, mechanism: Mechanism, recipe: Recipe, number
     # The default settings of MuJoCo and pymunk contain the lengths 1 mm and 0.1 m.
     if name in UNIT_CHANGES and engine.variant == "default":
         return CheckSkipped("the default settings contain lengths")
-    described = _cached_description(mechanism, recipe, name)
+    described = describe_otherwise(mechanism, recipe, name)
     if isinstance(described, CheckSkipped):
         return described
     changed, back = described
@@ -77,8 +77,9 @@ def relation_errors(engine: Engine, mechanism: Mechanism, recipe: Recipe, number
     return comparison if isinstance(comparison, CheckSkipped) else {name: comparison}
 
 
+@by_identity(CACHED_MECHANISMS)  # All engines of a case share the description.
 def describe_otherwise(
-    recipe: Recipe, mechanism: Mechanism, name: str
+    mechanism: Mechanism, recipe: Recipe, name: str
 ) -> tuple[Mechanism, Callable[[Trajectory], State]] | CheckSkipped:
     """The mechanism in another description, and the function that transforms a run's last state back."""
     if name in UNIT_CHANGES:
@@ -101,13 +102,6 @@ def describe_otherwise(
         return pose[-1], twist[-1]
 
     return changed, last
-
-
-@by_identity(CACHED_MECHANISMS)  # All engines of a case share the description.
-def _cached_description(
-    mechanism: Mechanism, recipe: Recipe, name: str
-) -> tuple[Mechanism, Callable[[Trajectory], State]] | CheckSkipped:
-    return describe_otherwise(recipe, mechanism, name)
 
 
 def _compare_runs(

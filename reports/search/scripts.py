@@ -73,7 +73,7 @@ def _runs(recipe: Recipe, mechanism: Mechanism, check: str, number: int) -> list
     steps."""
     name = relations.RELATIONS[number % len(relations.RELATIONS)]
     if check in (*relations.RELATIONS, "relations"):
-        changed = relations.describe_otherwise(recipe, mechanism, name)
+        changed = relations.describe_otherwise(mechanism, recipe, name)
         both = [("original", mechanism)] + ([] if isinstance(changed, CheckSkipped) else [(name, changed[0])])
         return [(title, one, INSTANT_STEP * one.time_scale, INSTANT_STEPS) for title, one in both]
     steps = motions.MOTION_SAMPLES * motions.COARSE_STEPS

@@ -148,7 +148,7 @@ def test_another_description_of_an_unknown_element_is_refused_by_name():
 def test_a_relation_of_the_search_skips_an_unknown_element_by_name():
     recipe = Recipe((RecipeBody(), RecipeBody()), ())
     for name in ("turned", "mirrored"):
-        skipped = relations.describe_otherwise(recipe, mechanism_with(RACK), name)
+        skipped = relations.describe_otherwise(mechanism_with(RACK), recipe, name)
         assert isinstance(skipped, CheckSkipped)
         assert "Rack" in skipped.reason
 
