@@ -35,7 +35,7 @@ from reports.pages.rendering import render_page
 from reports.pages.speed.page import page_of
 from reports.pages.speed.table import FILE, SpeedTable, as_csv, read
 from reports.run.installed import installed
-from reports.versions.catalogue import distributions, engines_named
+from reports.versions.builds import distributions, engines_named
 from reports.write.provenance import machine, versions
 from reports.write.tables import number
 

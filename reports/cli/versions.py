@@ -25,10 +25,20 @@ from reports.model.catalogue import PAGES
 from reports.model.ending import BadInput
 from reports.model.measure import Measurement
 from reports.run.files import write_whole
-from reports.versions.builds import SCENES, Progress, run_release
-from reports.versions.catalogue import compared_versions, engines_named
+from reports.versions.builds import SCENES, Progress, engines_named, run_release
 from reports.versions.column import VersionColumn
-from reports.versions.table import DATA, ReleaseTable, as_csv, as_published, changes, entries, merged, read, released
+from reports.versions.table import (
+    DATA,
+    RELEASES,
+    ReleaseTable,
+    as_csv,
+    as_published,
+    changes,
+    entries,
+    merged,
+    read,
+    released,
+)
 
 WIDTH = 150  # Number of columns of a table in a file or a pipe.
 
@@ -120,12 +130,12 @@ def _versions_by_engine(
     if everything:
         if engine is not None:
             raise BadInput("--all runs the versions of every engine; leave the engine out")
-        return compared_versions()
+        return {name: tuple(versions) for name, versions in RELEASES.items()}
     if engine is None:
         raise BadInput("name an engine and versions, such as: crosscheck versions mujoco 3.6.0 4.0.1; or give --all")
     engines_named(engine)
     if not numbers:
-        text = " ".join(compared_versions().get(engine, ()))
+        text = " ".join(RELEASES.get(engine, ()))
         raise BadInput(f"name versions of {engine}" + (f", such as {text}" if text else ""))
     return {engine: tuple(dict.fromkeys(numbers))}
 

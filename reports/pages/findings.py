@@ -27,8 +27,7 @@ from reports.model.tasks import Answer, Task
 from reports.pages.faults.page import OFFSETS, SCRIPTS, is_right
 from reports.plots.looks import colour
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
-from reports.versions.catalogue import COST_ROSE_IN
-from reports.versions.table import ACCELERATION, Entry, relative_cost, released, wrong_trees
+from reports.versions.table import ACCELERATION, COST_ROSE_IN, Entry, relative_cost, released, wrong_trees
 from reports.write.page_tables import COMPARED_STEP, advice
 from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template

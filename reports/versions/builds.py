@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from engines import Engine
-from engines.registry import OTHERS, VARIANTS
+from engines.loading import is_reference
+from engines.registry import OTHERS, VARIANTS, load
 from reference.scene import Scene
 from reports.model.catalogue import SCENES as ALL_SCENES
 from reports.model.cells import QUICK
 from reports.model.ending import BadInput, nearest
+from reports.model.fingerprint import normalised
 from reports.model.measure import Measurement
 from reports.run.files import temporary_folder
 from reports.run.installed import built, distributions_in, installed
-from reports.versions.catalogue import distributions, engine_of, engines_named
 from reports.versions.column import VersionColumn, VersionRequest, cells_of, column, modules_in
 from reports.versions.comparison import RowComparison, compared
 
 STORE = "cells.sqlite"
 # Short scenes that together contain all kinds of joints.
 SCENES = ("driven_four_bar", "free_four_bar", "free_slider_crank", "rolling_ellipse", "sleigh", "pendulum_2")
+# Distribution -> its former names, the newest name first.
+FORMERLY: Mapping[str, tuple[str, ...]] = {"mujoco-core": ("mujoco",)}
 LONGEST_CELL = 1.0  # A comparison leaves out cells with a longer estimated time [s].
 
 Done = Callable[[Measurement], None]
@@ -92,13 +95,17 @@ def compare_builds(
         if word not in known_variants:
             raise nearest("variant", word, known_variants)
     methods = [method for method in methods if not variants or method.variant in variants]
-    options: dict[str, Any] = {"every": QUICK, "variants": tuple(dict.fromkeys(method.variant for method in methods))}
+    options: dict[str, Any] = {
+        "every": QUICK,
+        "most": LONGEST_CELL,
+        "variants": tuple(dict.fromkeys(method.variant for method in methods)),
+    }
     with temporary_folder() as folder:
 
         def run(side: Build, number: str) -> VersionColumn:
             store = (results if side.stored else folder / number) / STORE
-            request = _request(engine or side.engine, side.location, scenes, store, most=LONGEST_CELL, **options)
-            return run_column(side.label, side.label, request, methods, progress)
+            name = engine or side.engine
+            return _run(side.label, side.label, name, methods, side.location, scenes, store, progress, **options)
 
         columns = run(a, "1"), run(b, "2")
     if columns[0].trouble:
@@ -120,17 +127,22 @@ def run_release(
     engines = engines_named(name)
     announce(f"{name} {version}")
     location = installed(distributions(engines[0]), version)
-    return run_column(f"{name} {version}", version, _request(name, location, scenes, store, **terms), engines, progress)
+    return _run(f"{name} {version}", version, name, engines, location, scenes, store, progress, **terms)
 
 
-def _request(engine: str, location: Path, scenes: Sequence[Scene] | None, store: Path, **terms: Any) -> VersionRequest:
-    chosen = scenes_named() if scenes is None else tuple(scenes)
-    return VersionRequest(chosen, engine, modules_in(location), location, store.absolute(), folder=Path.cwd(), **terms)
-
-
-def run_column(
-    label: str, version: str, request: VersionRequest, engines: Sequence[Engine], progress: Progress
+def _run(
+    label: str,
+    version: str,
+    name: str,
+    engines: Sequence[Engine],
+    location: Path,
+    scenes: Sequence[Scene] | None,
+    store: Path,
+    progress: Progress,
+    **terms: Any,
 ) -> VersionColumn:
+    chosen, modules = scenes_named() if scenes is None else tuple(scenes), modules_in(location)
+    request = VersionRequest(chosen, name, modules, location, store.absolute(), folder=Path.cwd(), **terms)
     with progress(label, len(cells_of(request, engines))) as (done, watch):
         return column(version, request, engines, watch, done)
 
@@ -161,3 +173,30 @@ def side_of(word: str, engine: str | None, engines: Sequence[Engine], announce: 
     if versions:
         label = f"{', '.join(f'{package} {number}' for package, number in versions.items())} ({label})"
     return Build(label, engine or (method.name if method else ""), location, False)
+
+
+def engines_named(word: str) -> tuple[Engine, ...]:
+    """The engines with this name, or the engines of a reference. Raises BadInput."""
+    if is_reference(word):
+        try:
+            return load(word)
+        except ValueError as error:
+            raise BadInput(str(error)) from None
+    engines = tuple(engine for engine in (*VARIANTS, *OTHERS) if engine.name == word)
+    if not engines:
+        raise nearest("engine", word, dict.fromkeys(engine.name for engine in (*VARIANTS, *OTHERS)))
+    return engines
+
+
+def distributions(engine: Engine) -> tuple[str, ...]:
+    """The distributions of an engine. The newest name of a distribution comes first."""
+    return tuple(name for package in engine.packages for name in (package, *FORMERLY.get(package, ())))
+
+
+def engine_of(engines: Sequence[Engine], names: Sequence[str]) -> Engine | None:
+    """The first engine that has one of these names, or needs a distribution or module with such a name."""
+    wanted = {normalised(name) for name in names}
+    for engine in engines:
+        if wanted & {normalised(name) for name in (engine.name, *distributions(engine))}:
+            return engine
+    return None

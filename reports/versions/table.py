@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -15,13 +14,12 @@ from typing import Any
 
 from reports.gate.change import WORSE
 from reports.model.outcomes import Outcome
-from reports.model.quantities import DIGITS, agrees, quantity
+from reports.model.quantities import agrees, quantity
 from reports.model.tasks import Answer
 from reports.run.installed import numbers
-from reports.versions.catalogue import compared_versions
 from reports.versions.column import VersionColumn
 from reports.versions.trees import Trees
-from reports.write.csv_files import read_lines
+from reports.write.csv_files import read_records, records_csv
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
@@ -30,6 +28,17 @@ WRONG_TREE = 0.01  # A tree counts as wrong if its relative error of acceleratio
 ACCELERATION_ROUNDING = 1e-3
 SAME_COST = 0.1  # A smaller relative difference of two CPU times counts as noise.
 LONGEST_SENTENCE = 200  # characters.
+# Engine -> version -> "changed" and "source" of a known change, if there is one.
+RELEASES: Mapping[str, Mapping[str, Mapping[str, str]]] = tomllib.loads(
+    Path(__file__).with_name("releases.toml").read_text(encoding="utf-8")
+)
+COST_ROSE_IN = "3.3.1"  # Since this release of MuJoCo a step with default settings needs more CPU time than in 3.3.0.
+
+
+def changes_between(engine: str, before: str, after: str) -> list[Mapping[str, str]]:
+    """The known changes after the version `before`, up to and including `after`."""
+    releases = RELEASES.get(engine, {}).items()
+    return [known for version, known in releases if known and numbers(before) < numbers(version) <= numbers(after)]
 
 
 @dataclass(frozen=True)
@@ -120,42 +129,29 @@ def wrong_trees(entry: Entry) -> tuple[int, int]:
 
 def as_csv(table: ReleaseTable) -> str:
     """The table as CSV. The marks are comments, and the sorted entries follow."""
-    out = io.StringIO()
-    for (engine, version), mark in table.marks.items():
-        out.write(f"# {engine} {version}: {mark}\n")
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([field.name for field in fields(Entry)])
-    for entry in sorted(table.entries, key=lambda entry: entry.identity):
-        writer.writerow(map(_as_text, astuple(entry)))
-    return out.getvalue()
-
-
-def _as_text(value: Any) -> str:
-    return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
+    marks = (f"{engine} {version}: {mark}" for (engine, version), mark in table.marks.items())
+    return records_csv(Entry, sorted(table.entries, key=lambda entry: entry.identity), marks)
 
 
 def read(path: Path) -> ReleaseTable:
     """Read the output of `as_csv`. If the file does not exist, the table is empty. Raises ValueError."""
     if not path.is_file():
         return ReleaseTable((), {})
-    comments, rows = read_lines(path.read_text(encoding="utf-8"))
-    heads = [comment.partition(": ") for comment in comments]
-    marks = {(name.split(" ")[0], name.split(" ")[-1]): mark for name, _, mark in heads}
-    types: dict[str, Any] = {field.name: float if field.type == "float" else str for field in fields(Entry)}
     try:
-        rows_read = tuple(Entry(**{name: kind(row[name]) for name, kind in types.items()}) for row in rows)
-    except (KeyError, TypeError, ValueError):
+        comments, rows = read_records(Entry, path.read_text(encoding="utf-8"))
+    except ValueError:
         raise ValueError(f"{path}: it is no table of versions; `crosscheck versions --all` writes one") from None
-    return ReleaseTable(rows_read, marks)
+    heads = [comment.partition(": ") for comment in comments]
+    return ReleaseTable(rows, {(name.split(" ")[0], name.split(" ")[-1]): mark for name, _, mark in heads})
 
 
 @cache
 def released(path: Path = DATA) -> ReleaseTable:
     """The table in a file, by default the published table. Versions that are not in RELEASES are left out."""
-    compared, table = compared_versions(), read(path)
+    table = read(path)
 
     def is_listed(engine: str, version: str) -> bool:
-        return version in compared.get(engine, (version,))
+        return version in RELEASES.get(engine, (version,))
 
     listed = tuple(entry for entry in table.entries if is_listed(entry.engine, entry.version))
     return ReleaseTable(listed, {key: mark for key, mark in table.marks.items() if is_listed(*key)})
@@ -171,20 +167,16 @@ def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:
 
 def as_published(table: ReleaseTable, before: ReleaseTable) -> ReleaseTable:
     """The entries of `table`. A number that differs from `before` only by rounding or noise is taken from `before`."""
-    published = {entry.identity: entry for entry in before.entries}
-    renewed = tuple(_as_published(entry, published.get(entry.identity, entry)) for entry in table.entries)
-    return ReleaseTable(renewed, table.marks)
+    published = {(*entry.identity, entry.outcome, f"{entry.step:.4g}"): entry for entry in before.entries}
 
+    def kept(now: Entry) -> Entry:
+        earlier = published.get((*now.identity, now.outcome, f"{now.step:.4g}"), now)
+        same = f"{now.error:.4g}" == f"{earlier.error:.4g}"
+        same = same if now.quantity == ACCELERATION else agrees(now.quantity, now.error, earlier.error)
+        cpu = earlier.cpu if abs(now.cpu - earlier.cpu) < SAME_COST * earlier.cpu else now.cpu
+        return replace(now, error=earlier.error if same else now.error, cpu=cpu)
 
-def _as_published(now: Entry, before: Entry) -> Entry:
-    if (now.outcome, _as_text(now.step)) != (before.outcome, _as_text(before.step)):
-        return now
-    if now.quantity == ACCELERATION:
-        same = _as_text(now.error) == _as_text(before.error)
-    else:
-        same = agrees(now.quantity, now.error, before.error)
-    cpu = before.cpu if abs(now.cpu - before.cpu) < SAME_COST * before.cpu else now.cpu
-    return replace(now, error=before.error if same else now.error, cpu=cpu)
+    return ReleaseTable(tuple(map(kept, table.entries)), table.marks)
 
 
 def change(before: Entry, after: Entry) -> str:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import astuple, dataclass, field, fields, replace
 from pathlib import Path
+from typing import Any, TypeVar, cast
 
 from engines import ConvergenceOrder
 from reports.model.cells import Cell, mechanism_of
@@ -20,6 +21,7 @@ from reports.model.measure import TIMINGS, Measurement
 from reports.model.quantities import DIGITS, OF, QUANTITIES, agrees
 from reports.write.provenance import machine
 
+Record = TypeVar("Record")
 IDENTITY_COLUMNS = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every", "step")
 
 
@@ -66,6 +68,30 @@ def read_lines(text: str) -> tuple[list[str], list[dict[str, str]]]:
     lines = text.splitlines()
     comments = [line.removeprefix("# ") for line in lines if line.startswith("#")]
     return comments, list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def records_csv(kind: type, records: Iterable[Any], comments: Iterable[str] = ()) -> str:
+    """Instances of a dataclass as CSV, with a column for each field. `comments` precede the header."""
+    out = io.StringIO()
+    out.writelines(f"# {line}\n" for line in comments)
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(column.name for column in fields(kind))
+    writer.writerows([_record_text(value) for value in astuple(record)] for record in records)
+    return out.getvalue()
+
+
+def _record_text(value: Any) -> str:
+    return f"{value:.{DIGITS}g}" if isinstance(value, float) else no_formula(str(value))
+
+
+def read_records(kind: Callable[..., Record], text: str) -> tuple[list[str], tuple[Record, ...]]:
+    """The comments and the instances in a text by `records_csv`. Raises ValueError for another text."""
+    comments, lines = read_lines(text)
+    kinds = {column.name: float if column.type == "float" else str for column in fields(cast(Any, kind))}
+    try:
+        return comments, tuple(kind(**{name: read(line[name]) for name, read in kinds.items()}) for line in lines)
+    except (KeyError, TypeError, ValueError):
+        raise ValueError("the columns of a line are missing or have other values") from None
 
 
 # Columns with long texts, which the files replace by digests.

@@ -1,11 +1,10 @@
-"""Tests of steps and costs of cells, of fits of power laws, and of the page "scaling" with its banded solver."""
+"""Tests of steps and costs of cells, of fits of power laws, and of the page "scaling"."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-import numpy as np
 import pytest
 
 from engines import ConvergenceOrder, NotDeclared
@@ -13,7 +12,6 @@ from reference.scenes.pendulum.scenes import LinkPendulum, LongPendulum
 from reports.cli.selection import BadInput, steps_per_sample
 from reports.model.cells import COST_LIMIT, FULL, QUICK, Cell, estimated_cost, sweep_cells
 from reports.model.outcomes import Outcome
-from reports.pages.scaling.banded import BandedChain
 from reports.pages.scaling.page import MethodSeries, SizePoint, cost_table, crossing, series_of
 from reports.write.rows import Rows
 from tests.rows import row_of, table
@@ -29,15 +27,6 @@ def test_the_banded_solver_and_a_dense_solver_give_equal_forces():
     # The tolerance covers forces of 1e3 N and a condition number of 1e3 in the dense solver.
     assert long.reaction(pose, acceleration) == pytest.approx(plain.reaction(pose, acceleration), abs=1e-8)
     assert long.reaction(pose, acceleration) == pytest.approx(truth.motion([0.2, 0.5]).reaction, abs=1e-8)
-
-
-def test_the_banded_solver_with_rk4_has_order_four():
-    scene = LongPendulum(5)
-    errors = []
-    for steps in (100, 200):
-        run = BandedChain().build(scene.mechanism(), scene.duration / steps)(1, steps)
-        errors.append(np.abs(run.pose[-1] - scene.motion([scene.duration]).pose[0]).max())
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
 
 
 @dataclass(frozen=True)

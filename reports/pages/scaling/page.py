@@ -25,7 +25,6 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.pages.pendulum import page as pendulum
-from reports.pages.scaling.banded import BandedChain
 from reports.plots.looks import look
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.tables import DASH, markdown, number
@@ -176,11 +175,11 @@ EULER, RUNGE_KUTTA = Lagrange("euler", "projection"), Lagrange("rk4", "projectio
 
 SCALING_METHODS: tuple[Engine, ...] = (
     *(pymunk.DEFAULT, pymunk.TUNED, pymunk.EXTENDED, mujoco.DEFAULT, mujoco.TUNED),
-    *(FREE_DEFAULT, SCALING_SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA, BandedChain()),
+    *(FREE_DEFAULT, SCALING_SPARSE_NEWTON, PGS, EULER, RUNGE_KUTTA),
 )
 # Methods that take seconds for a step of a chain with more than 300 links.
 AT_MOST_300 = (pymunk.EXTENDED, PGS, EULER, RUNGE_KUTTA)
-CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING_SPARSE_NEWTON, BandedChain())
+CHEAP: tuple[Engine, ...] = (pymunk.DEFAULT, pymunk.TUNED, FREE_DEFAULT, SCALING_SPARSE_NEWTON)
 
 # In a chain of N equal links, an iteration multiplies the slowest mode by 1 - pi^2/(4 N^2). A step needs
 # SWEEPS_OVER_SQUARE N^2 iterations to reduce this mode by the factor RESIDUAL. From CAPPED links on, a step has
@@ -276,7 +275,6 @@ def context(material: Material) -> Mapping[str, Any]:
         "tree": {n: at(mujoco.TUNED, n) for n in (100, 1000)},
         "sparse": {n: at(SCALING_SPARSE_NEWTON, n) for n in (100, 1000)},
         "swept": at(PGS, 100),
-        "banded": {n: at(BandedChain(), n) for n in (100, 1000)},
         "impulses": {n: at(pymunk.DEFAULT, n) for n in (100, 1000)},
         "own": answer.number("error") if (answer := material.finished(REFERENCE_ERROR)) else UNMEASURED,
         "step": FIXED_STEP,

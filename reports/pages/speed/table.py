@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import astuple, dataclass, field, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 from reports.model.ending import BadInput
-from reports.write.csv_files import no_formula, read_lines
+from reports.write.csv_files import read_records, records_csv
 from reports.write.tables import DASH, number
 
 FILE = "speed.csv"
@@ -136,30 +133,15 @@ class SpeedTable:
 
 def as_csv(table: SpeedTable) -> str:
     """The text of the file: comments with the facts, then the rows."""
-    out = io.StringIO()
-    out.writelines(f"# {name}: {text}\n" for name, text in table.facts.items())
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([column.name for column in fields(SpeedRow)])
-    for row in table.rows:
-        writer.writerow([f"{v:.4g}" if isinstance(v, float) else no_formula(v) for v in astuple(row)])
-    return out.getvalue()
-
-
-def of_csv(text: str) -> SpeedTable:
-    """The table of a text by `as_csv`. Raises ValueError for another text."""
-    comments, lines = read_lines(text)
-    facts = dict(line.split(": ", 1) for line in comments if ": " in line)
-    numbers = [column.name for column in fields(SpeedRow) if column.type == "float"]
-    try:
-        rows: Iterable[Any] = [SpeedRow(**{**row, **{name: float(row[name]) for name in numbers}}) for row in lines]
-        return SpeedTable(tuple(rows), facts)
-    except (KeyError, TypeError, ValueError):
-        raise ValueError(f"not a file {FILE}: `crosscheck bench peers` writes one") from None
+    return records_csv(SpeedRow, table.rows, (f"{name}: {text}" for name, text in table.facts.items()))
 
 
 def read(path: Path = RESULTS / FILE) -> SpeedTable:
     """The stored table, which is empty if the file does not exist. Raises BadInput for another file."""
+    if not path.is_file():
+        return SpeedTable(())
     try:
-        return of_csv(path.read_text(encoding="utf-8")) if path.is_file() else SpeedTable(())
-    except ValueError as reason:  # also for bytes that are no text
-        raise BadInput(f"{path}: {reason}") from None
+        comments, rows = read_records(SpeedRow, path.read_text(encoding="utf-8"))
+    except ValueError:  # also for bytes that are no text
+        raise BadInput(f"{path}: not a file {FILE}: `crosscheck bench peers` writes one") from None
+    return SpeedTable(rows, dict(comment.split(": ", 1) for comment in comments if ": " in comment))

@@ -16,8 +16,16 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
-from reports.versions.catalogue import COST_ROSE_IN, changes_between
-from reports.versions.table import ACCELERATION, Entry, ReleaseTable, changes, relative_cost, released
+from reports.versions.table import (
+    ACCELERATION,
+    COST_ROSE_IN,
+    Entry,
+    ReleaseTable,
+    changes,
+    changes_between,
+    relative_cost,
+    released,
+)
 from reports.write.tables import markdown
 
 
@@ -94,7 +102,7 @@ def version_table(table: ReleaseTable, engine: str) -> str:
     for previous, version in pairwise(("", *versions)):
         verdicts = [verdict for _, after, verdict in changed if after.version == version]
         known_changes = changes_between(engine, previous, version) if previous else ()
-        change = "; ".join(f"{release.changed} ([source]({release.source}))" for release in known_changes)
+        change = "; ".join("{changed} ([source]({source}))".format(**known) for known in known_changes)
         counts = (
             f"{verdicts.count('better') or '-'}",
             f"**{verdicts.count('WORSE')}**" if "WORSE" in verdicts else "-",
