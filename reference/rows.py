@@ -14,9 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dpbsv, dpbtrs  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from reference.checks import InvalidMechanism, require_room
 from reference.couplings import Coupling
@@ -250,6 +247,11 @@ def banded_reaction(joint_rows: JointRows, pose: Array, excess: Array, inertias:
     Cuthill-McKee) and factorised by Cholesky. The cost for a chain is O(bodies), compared with O(bodies^3) for the
     dense system.
     """
+    # Imported here, since these imports are slow and systems with few rows don't need them.
+    from scipy.linalg.lapack import dpbsv, dpbtrs  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
     everything, count = joint_rows.with_ground(pose), joint_rows.count
     blocks = [group.blocks(everything) for group in joint_rows.groups]
     places = [group.places() for group in joint_rows.groups]

@@ -2,32 +2,34 @@
 
 from __future__ import annotations
 
-import gc
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import cache
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from engines import Regularisation
-from engines.lagrange.dynamics import ADAPTIVE_DOP853, NO_STAGES, PROJECTION_ITERATIONS, Tableau
-from engines.lagrange.loading import CompiledFunctions, compiled, compiling_once
+from engines.lagrange.dynamics import PROJECTION_ITERATIONS
+from engines.lagrange.loading import compiled
+from engines.lagrange.methods import ADAPTIVE_DOP853, Tableau
 from engines.lagrange.records import (
     CELL_SIZE,
+    NO_RESULTS,
     Records,
     RollingForm,
     RowLaw,
+    Samples,
     StepStorage,
     System,
+    Task,
+    block_of,
     new_storage,
 )
 from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
 from engines.rolling_table import CELLS_IN_BLOCK, FARTHEST, Table, rolled
 from reference.joints import Roll
-from reference.mechanism import Body, Mechanism
+from reference.mechanism import Mechanism
 from reference.rolling.kinematics import Rolling
 from reference.trajectory import RunWarning
 
@@ -122,14 +124,21 @@ def singular_warning(t: float) -> RunWarning:
 
 @dataclass
 class CompiledModel:
-    """The records of a mechanism, and calls of the compiled functions that use them."""
+    """The records of a mechanism, and calls of the compiled function that uses them."""
 
     mechanism: Mechanism
     system: System
     storage: StepStorage
     positions: NDArray[np.int64]  # (rows,) rows of the system by row of the mechanism
     windows: CellWindows
-    functions: CompiledFunctions = field(default_factory=compiled)
+
+    def __post_init__(self) -> None:
+        self._storage_block = block_of(self.storage)
+        self._set_cells()
+
+    def _set_cells(self) -> None:
+        self.system = self.system._replace(cells=self.windows.cells)
+        self._system_block = block_of(self.system)
 
     @classmethod
     def of(cls, mechanism: Mechanism) -> CompiledModel | None:
@@ -201,58 +210,44 @@ class CompiledModel:
         poses, twists: contiguous arrays (samples, bodies, 3).
         A run stops early if a contact has no cell or if the motion diverges.
         """
-        return self._call(self.functions.fixed_steps, begin, poses, twists, tableau, iterations, dt, every)
+        samples = _flat(poses, twists)
+        return self._call(Task.FIXED_STEPS, tableau, samples, begin, iterations, every, dt, 0.0)
 
     def adaptive_steps(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
         """Fill the samples, which are `spacing` [s] apart, by adaptive steps; see `fixed_steps`."""
         step_tolerance = max(STEP_SHARE * tolerance, LEAST_STEP_TOLERANCE)
         self.system.status["accepted_steps"] = 0
-        settings = ADAPTIVE_DOP853, PROJECTION_ITERATIONS, step_tolerance, spacing
-        return self._call(self.functions.adaptive_steps, begin, poses, twists, *settings)
+        samples = _flat(poses, twists)
+        settings = begin, PROJECTION_ITERATIONS, 1, spacing, step_tolerance
+        return self._call(Task.ADAPTIVE_STEPS, ADAPTIVE_DOP853, samples, *settings)
 
     def reactions(self, dt: float, poses: Array, twists: Array) -> tuple[Array, Array]:
         """Reactions (samples, rows) and accelerations (samples, bodies, 3) of states dt [s] apart; NaN if unknown."""
         reactions = np.full((len(poses), len(self.positions)), np.nan)
         accelerations = np.full((len(poses), 3 * len(self.mechanism.bodies)), np.nan)
-        self._call(self.functions.evaluate_samples, 0, poses, twists, dt, reactions, accelerations)
+        samples = _flat(poses, twists, reactions, accelerations)
+        self._call(Task.EVALUATION, ADAPTIVE_DOP853, samples, 0, 0, 1, dt, 0.0)
         return reactions[:, self.positions], accelerations.reshape(poses.shape)
 
-    def _call(self, function: Callable[..., int], begin: int, poses: Array, twists: Array, *settings: Any) -> int:
-        """Call the function; after each move of a window, call it again from the last completed sample."""
-        if not (poses.flags.c_contiguous and twists.flags.c_contiguous):
-            raise ValueError("poses and twists are not contiguous arrays; copy them, since the function fills them")
-        states = poses.reshape(len(poses), -1), twists.reshape(len(twists), -1)
-        status = self.system.status
+    def _call(
+        self, task: Task, tableau: Tableau, samples: Samples, begin: int, iterations: int, every: int, *reals: float
+    ) -> int:
+        """Run a task; after each move of a window, run it again from the last completed sample."""
+        run, status, blocks = compiled(), self.system.status, (block_of(tableau), block_of(samples))
         done, moves = begin, 0
         while True:
             status["missing_roll"] = -1
-            system = self.system._replace(cells=self.windows.cells)
-            begin, done = done, function(system, self.storage, done, *states, *settings)
+            settings = done, iterations, every, *reals
+            begin, done = done, run(task, self._system_block, self._storage_block, *blocks, *settings)
             moves = moves + 1 if done == begin else 0
             roll = int(status["missing_roll"])
             if roll < 0 or moves > MOST_MOVES or not self.windows.move(roll, float(status["missing_angle"])):
                 return done
+            self._set_cells()
 
 
-@cache
-def compile_functions(adaptive: bool) -> None:
-    """Compile the functions of a run (ten seconds of CPU time), or read their machine code from files.
-
-    Garbage collection is off during the compilation, since it would take a twelfth of the time.
-    """
-    model = CompiledModel.of(Mechanism((Body("body", 1.0, 1.0, (0.0, 0.0, 0.0)),), ()))
-    if model is None:
-        return
-    collects = gc.isenabled()
-    gc.disable()
-    try:
-        with compiling_once(adaptive):
-            poses, twists = model.empty_samples(1)
-            if adaptive:
-                model.adaptive_steps(1e-3, 1.0, 0, poses, twists)
-            else:
-                model.fixed_steps(NO_STAGES, 0, 1.0, 1, 0, poses, twists)
-            model.reactions(1.0, poses, twists)
-    finally:
-        if collects:
-            gc.enable()
+def _flat(poses: Array, twists: Array, reactions: Array = NO_RESULTS, accelerations: Array = NO_RESULTS) -> Samples:
+    """The samples as arrays (samples, coordinates) on the same memory."""
+    if not (poses.flags.c_contiguous and twists.flags.c_contiguous):
+        raise ValueError("poses and twists are not contiguous arrays; copy them, since the function fills them")
+    return Samples(poses.reshape(len(poses), -1), twists.reshape(len(twists), -1), reactions, accelerations)

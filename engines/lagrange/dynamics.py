@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import DOP853
-from scipy.linalg import get_lapack_funcs
 
 from engines import Regularisation
+from engines.lagrange.methods import Tableau
 from engines.lagrange.records import CLOSED, LEAST_INVERSE_INERTIA
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE, rank, solve_symmetric
@@ -22,49 +21,6 @@ PROJECTION_ITERATIONS = 8
 # for a few bodies.
 MOST_NUMPY_STEPS, NUMPY_STEPS_PER_SAMPLE = 2_000, 100
 
-(_solve_positive,) = get_lapack_funcs(("posv",), dtype=np.float64)
-
-
-class Tableau(NamedTuple):
-    """An explicit Runge-Kutta method: stages (n, n), weights (n,) and nodes (n,)."""
-
-    stages: Array
-    weights: Array
-    nodes: Array
-
-
-NO_STAGES = Tableau(np.zeros((0, 0)), np.zeros(0), np.zeros(0))  # the semi-implicit Euler method
-RK4 = Tableau(
-    np.array([[0, 0, 0, 0], [0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, 1, 0]]),
-    np.array([1, 2, 2, 1]) / 6,
-    np.array([0, 0.5, 0.5, 1]),
-)
-FIXED_DOP853 = Tableau(DOP853.A.copy(), DOP853.B.copy(), DOP853.C.copy())
-
-
-class Embedded(NamedTuple):
-    """DOP853 with error estimates and dense output (Hairer, Norsett and Wanner, part I, section II.6).
-
-    Stage 13 is at the end of the step, and three further stages are for dense output.
-    """
-
-    stages: Array  # (16, 16).
-    weights: Array  # (12,).
-    nodes: Array  # (16,).
-    third: Array  # (13,) weights of the error estimate of order 3.
-    fifth: Array  # (13,) weights of the error estimate of order 5.
-    dense: Array  # (4, 16).
-
-
-def _embedded() -> Embedded:
-    stages = np.zeros((16, 16))
-    stages[:12, :12], stages[12, :12], stages[13:, :] = DOP853.A, DOP853.B, DOP853.A_EXTRA
-    nodes = np.concatenate([DOP853.C, [1.0], DOP853.C_EXTRA])
-    return Embedded(stages, DOP853.B.copy(), nodes, DOP853.E3.copy(), DOP853.E5.copy(), DOP853.D.copy())
-
-
-ADAPTIVE_DOP853 = _embedded()
-
 
 def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot: float = 0.0) -> Array:
     """Solve matrix x = right for a symmetric, positive semidefinite matrix (rows, rows).
@@ -74,7 +30,10 @@ def solve_rows(matrix: Array, right: Array, dependent: bool = False, least_pivot
     `least_pivot` times the diagonal, it is the minimum-norm solution. The solution is NaN if the matrix is not finite.
     """
     if not dependent:
-        factor, solution, failed = _solve_positive(matrix, right, lower=True)
+        # Imported here, as DOP853 below, since the import is slow and compiled runs don't need it.
+        from scipy.linalg.lapack import dposv  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
+
+        factor, solution, failed = dposv(matrix, right, lower=True)
         if not failed and np.all(np.diag(factor) ** 2 >= least_pivot * np.diag(matrix)):
             return solution
     if not np.all(np.isfinite(matrix)):
@@ -225,7 +184,7 @@ def semi_implicit_euler(dynamics: Dynamics) -> Step:
 
 
 def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
-    stages, weights, nodes = tableau
+    stages, weights, nodes = tableau[:3]
 
     def step(pose: Array, twist: Array, t: float, dt: float) -> tuple[Array, Array]:
         velocity = np.empty((len(weights), *pose.shape))
@@ -241,6 +200,8 @@ def runge_kutta(dynamics: Dynamics, tableau: Tableau) -> Step:
 
 def adaptive(dynamics: Dynamics, tolerance: float) -> Step:
     """Make adaptive steps of DOP853 from sample to sample; the state is NaN if steps become too small or too many."""
+    from scipy.integrate import DOP853
+
     tolerance = max(tolerance, 100 * float(np.finfo(float).eps))  # the smallest tolerance of scipy's DOP853
     steps_left = MOST_NUMPY_STEPS
     allowed: Any = tolerance * np.append(dynamics.unit, dynamics.unit / dynamics.mechanism.time_scale)

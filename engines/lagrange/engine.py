@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, get_args
 
 from engines import EXACT, ConvergenceOrder, Enforcement, Engine, NotDeclared, Regularisation
-from engines.lagrange.compiled_model import compile_functions
-from engines.lagrange.loading import installed
+from engines.lagrange.loading import compiled, installed
 from engines.lagrange.running import LagrangeRun
 from engines.motions import is_prescribed, over_three
 from reference.checks import InvalidMechanism, Positive, Valid, validated
@@ -66,7 +65,7 @@ class Lagrange(Engine, Valid):
 
     def prepare(self) -> None:
         if self.in_machine_code:
-            compile_functions(self.tolerance is not None)
+            compiled()
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:

@@ -6,6 +6,8 @@ entries for each body, and three zeros for the ground.
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Iterable
 from enum import IntEnum
 from typing import Any, NamedTuple
 
@@ -28,6 +30,10 @@ class ForceKind(IntEnum):
 
 class RollingForm(IntEnum):
     ON_LINE, ON_ROUND, TABULATED, NOT_TABULATED = range(4)
+
+
+class Task(IntEnum):
+    FIXED_STEPS, ADAPTIVE_STEPS, EVALUATION = range(3)
 
 
 class RowLaw(IntEnum):
@@ -134,6 +140,29 @@ class StepStorage(NamedTuple):
     acceleration: Reals
     velocities: Reals  # (MOST_STAGES, coordinates)
     accelerations: Reals
+
+
+class Samples(NamedTuple):
+    """States (samples, coordinates without the ground's), and reactions (samples, rows) and accelerations of states."""
+
+    poses: Reals
+    twists: Reals
+    reactions: Reals
+    accelerations: Reals
+
+
+NO_RESULTS: Reals = np.zeros((0, 0))
+
+
+def block_of(arrays: Iterable[Any]) -> ctypes.Array[ctypes.c_int64]:
+    """The addresses and shapes of contiguous arrays, for compiled functions. The caller must keep the arrays."""
+    words = list[int]()
+    for array in arrays:
+        interface = array.__array_interface__
+        if interface["strides"] is not None:
+            raise ValueError("an array for compiled code is not contiguous; copy the array")
+        words += (interface["data"][0], *interface["shape"])
+    return (ctypes.c_int64 * len(words))(*words)
 
 
 def new_status() -> Any:

@@ -11,10 +11,7 @@ from numpy.typing import NDArray
 from engines import OneShot, Size
 from engines.lagrange.compiled_model import CompiledModel, open_warning, stopped_warning
 from engines.lagrange.dynamics import (
-    FIXED_DOP853,
-    NO_STAGES,
     PROJECTION_ITERATIONS,
-    RK4,
     Dynamics,
     Step,
     adaptive,
@@ -22,6 +19,7 @@ from engines.lagrange.dynamics import (
     runge_kutta,
     semi_implicit_euler,
 )
+from engines.lagrange.methods import FIXED_DOP853, NO_STAGES, RK4
 from reference.checks import Count, validated
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -46,10 +44,8 @@ class LagrangeRun(OneShot):
         self._regularisation = engine.regularisation(mechanism, dt)
         self._model = CompiledModel.of(mechanism) if engine.in_machine_code else None
         self._dynamics = None if self._model else Dynamics(mechanism, self._regularisation)
-        if self._model is not None:
-            engine.prepare()
-            if self._regularisation is not None:
-                self._model.regularise(self._regularisation, np.ones(mechanism.row_count, dtype=bool))
+        if self._model is not None and self._regularisation is not None:
+            self._model.regularise(self._regularisation, np.ones(mechanism.row_count, dtype=bool))
         count = len(mechanism.bodies)
         self.size = Size(count, 3 * count, mechanism.row_count, mechanism.row_count)
 
@@ -65,6 +61,8 @@ class LagrangeRun(OneShot):
         self._mechanism.require_room(samples)
         self.begin()
         t = np.arange(samples + 1, dtype=np.float64) * (every * self._dt)
+        if self._model is not None:
+            self._engine.prepare()
         started = time.process_time()
         with np.errstate(all="ignore"):  # a diverging run has another warning
             poses, twists = self._motion(samples, every)

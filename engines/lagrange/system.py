@@ -13,8 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from engines.lagrange.records import (
     BODY_RECORD,
@@ -175,15 +173,42 @@ def _first_rows(joints: Sequence[Joint], numbers: Numbers) -> Integers:
     """The first row of each joint (joints,); rows of joints on the same body are near each other."""
     if not joints:
         return np.zeros(0, dtype=np.int64)
-    ground = numbers[None]
-    ends = np.array([(numbers[joint.first], numbers[joint.second]) for joint in joints])
-    joint, side = np.nonzero(ends < ground)
-    on_body = coo_array((np.ones(len(joint)), (joint, ends[joint, side])), shape=(len(joints), ground)).tocsr()
-    order = reverse_cuthill_mckee((on_body @ on_body.T).tocsr(), symmetric_mode=True)
+    ends = [(numbers[joint.first], numbers[joint.second]) for joint in joints]
+    order = np.array(_cuthill_mckee(ends, numbers[None]))[::-1]
     sizes = np.array([joint.size for joint in joints])
     first_rows = np.empty(len(joints), dtype=np.int64)
     first_rows[order] = np.cumsum(sizes[order]) - sizes[order]
     return first_rows
+
+
+def _cuthill_mckee(ends: Sequence[tuple[int, int]], ground: int) -> list[int]:
+    """The joints in the order of Cuthill and McKee (1969), by the joints on their moving bodies.
+
+    scipy's function gives the same order, but its import is slow.
+    """
+    on_body: dict[int, list[int]] = {}
+    for joint, bodies in enumerate(ends):
+        for body in {*bodies} - {ground}:
+            on_body.setdefault(body, []).append(joint)
+    # Neighbours begin with the last one of the second body, as in scipy's product of sparse matrices.
+    neighbours = [
+        list(dict.fromkeys(other for body in sorted({*bodies} - {ground}) for other in on_body[body]))[::-1]
+        for bodies in ends
+    ]
+    degrees = [len(own) + (joint in own) for joint, own in enumerate(neighbours)]
+    order, is_placed = list[int](), [False] * len(ends)
+    for seed in np.argsort(degrees).tolist():
+        if is_placed[seed]:
+            continue
+        is_placed[seed], position = True, len(order)
+        order.append(seed)
+        while position < len(order):
+            new = [joint for joint in neighbours[order[position]] if not is_placed[joint]]
+            for joint in new:
+                is_placed[joint] = True
+            order += sorted(new, key=degrees.__getitem__)
+            position += 1
+    return order
 
 
 def _bodies_of(terms: Iterable[Term], numbers: Numbers) -> list[int]:

@@ -38,7 +38,7 @@ def ideal_motion(
     from numpy is accepted only if the judge resolves the whole motion without a warning. So every motion has the
     accuracy that the judge claims."""
     on_progress("following the ideal motion")
-    if is_cold(adaptive=True):
+    if is_cold():
         begin = time.process_time()
         motion = _motion_in_numpy(mechanism, samples, spacing, tolerance)
         add_numpy_seconds(time.process_time() - begin)

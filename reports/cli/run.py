@@ -152,7 +152,7 @@ def run_interruptible(
     """Run cells and tasks, show the progress, and return the number of items run. All processors are used by default.
     After Ctrl-C it prints a line about the stored rows and raises KeyboardInterrupt."""
     by = crew or cluster.pool(None)
-    if is_cold(adaptive=False) and any(isinstance(item, Task) or "numba" in item.engine.packages for item in items):
+    if is_cold() and any(isinstance(item, Task) or "numba" in item.engine.packages for item in items):
         print(COMPILING_NOTE, file=sys.stderr)
     with interruptible(console, store, items, limit, "cells", fresh) as (waiting, done, watch):
         return run_into(store, waiting, True, limit, by.threads, done, watch, supervised=by.supervise)

@@ -20,13 +20,12 @@ from engines.lagrange.compiled_model import CompiledModel
 from engines.lagrange.dynamics import (
     LEAST_INVERSE_INERTIA,
     PROJECTION_ITERATIONS,
-    RK4,
     Dynamics,
-    Tableau,
     runge_kutta,
     semi_implicit_euler,
 )
 from engines.lagrange.loading import installed
+from engines.lagrange.methods import RK4, Tableau
 from reference.checks import freeze
 from reference.mechanism import Mechanism
 from reference.rows import RANK_TOLERANCE

@@ -11,7 +11,8 @@ from scipy.special import ellipj, ellipk
 from engines import Regularisation
 from engines.constrained import constrained
 from engines.lagrange import JUDGE_CLAIM, TRUTH, Judge, Lagrange
-from engines.lagrange.dynamics import RK4, Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
+from engines.lagrange.dynamics import Dynamics, constrained_acceleration, inverse_inertia, runge_kutta
+from engines.lagrange.methods import RK4
 from reference.joints import Pin
 from reference.mechanism import Body, Mechanism
 from reference.plane import rotation_acceleration

@@ -13,7 +13,8 @@ import pytest
 from engines import Regularisation
 from engines.lagrange import METHODS, Lagrange, loading
 from engines.lagrange.compiled_model import CompiledModel
-from engines.lagrange.dynamics import RK4, Dynamics
+from engines.lagrange.dynamics import Dynamics
+from engines.lagrange.methods import RK4
 from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, system_of
 from reference.couplings import Coupling
 from reference.forces import CoupledForce, Damper, TorsionDamper
@@ -191,23 +192,3 @@ def test_fixed_steps_that_end_beside_a_singular_position_have_a_warning():
         step = parallelograms.spacing / steps_per_sample
         run = Lagrange("dop853").build(parallelograms.mechanism(), step)(20, steps_per_sample)
         assert any("beside a singular position" in warning for warning in run.warnings) == is_near
-
-
-def test_one_process_compiles_while_the_others_wait(monkeypatch, tmp_path):
-    fcntl = pytest.importorskip("fcntl")
-    monkeypatch.setattr(loading, "_cache_folder", lambda: tmp_path)
-    with (
-        loading.compiling_once(adaptive=True),
-        (tmp_path / "lock").open() as of_another,
-        pytest.raises(BlockingIOError),
-    ):
-        fcntl.flock(of_another, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    with (tmp_path / "lock").open() as of_another:
-        fcntl.flock(of_another, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-def test_a_process_with_machine_code_does_not_wait(monkeypatch, tmp_path):
-    monkeypatch.setattr(loading, "_cache_folder", lambda: tmp_path)
-    (tmp_path / "steps.fixed_steps.nbi").touch()
-    with loading.compiling_once(adaptive=False):
-        assert not (tmp_path / "lock").exists()

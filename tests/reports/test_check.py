@@ -253,8 +253,8 @@ def new_installation(monkeypatch, tmp_path):
     """An installation without machine code, in which compilation is slower than numpy. The value is the list of the
     reported stages."""
     monkeypatch.setattr(first_use, "COMPILE_SECONDS", math.inf)
-    monkeypatch.setattr(first_use, "is_cold", lambda adaptive: True)
-    monkeypatch.setattr(loading, "_cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(first_use, "is_cold", lambda: True)
+    monkeypatch.setattr(loading, "code_file", lambda: tmp_path / "judge.code")
     return list[str]()
 
 

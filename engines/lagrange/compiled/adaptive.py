@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from engines.lagrange.compiled import entry, inlined, merged
+from engines.lagrange.compiled import inlined, inner, merged
 from engines.lagrange.compiled.dense import fill_samples
 from engines.lagrange.compiled.steps import accelerate, add_stages, copy_state, evaluate_stage, project, store_stage
 
@@ -30,9 +30,10 @@ FARTHEST_STAGE = 1.0
 STIFF_PRODUCT, STIFF_STEPS = 6.1, 15
 
 
-@entry
-def adaptive_steps(system, storage, begin, poses, twists, method, iterations, tolerance, spacing):
+@inner
+def adaptive_steps(system, storage, method, samples, begin, iterations, spacing, tolerance):
     """Fill poses and twists (samples, 3 bodies), `spacing` apart, after `begin`; return the last completed sample."""
+    poses, twists = samples.poses, samples.twists
     status, last = system.status, len(poses) - 1
     copy_state(poses[begin], twists[begin], storage.pose, storage.twist)
     t, sample, tries, stiff, step = spacing * begin, begin, 0, 0, -1.0

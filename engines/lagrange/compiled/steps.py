@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from engines.lagrange.compiled import entry, inlined, inner, merged
+from engines.lagrange.compiled import inlined, inner, merged
 from engines.lagrange.compiled.forces import applied_accelerations
 from engines.lagrange.compiled.joints import set_bodies, set_equations
 from engines.lagrange.compiled.solve import FEW_ROWS, WELL_CONDITIONED, factorise_rows, row_times, solve
@@ -141,15 +141,15 @@ def add_stages(storage, weights, dt, pose, twist):
         twist[k] += dt * gained
 
 
-@entry
-def fixed_steps(system, storage, begin, poses, twists, tableau, iterations, dt, every):
+@inner
+def fixed_steps(system, storage, tableau, samples, begin, iterations, dt, every):
     """Make `every` steps of `dt` per sample after `begin`, and fill poses and twists (samples, 3 bodies).
 
     Without stages the method is semi-implicit Euler. A run stops early before a pose that is not finite, or before a
     contact without a cell in its table (`missing_roll`). Returns the last completed sample.
     iterations: number of Newton iterations after a step; 0 for no projection.
     """
-    pose, twist = storage.pose, storage.twist
+    pose, twist, poses, twists = storage.pose, storage.twist, samples.poses, samples.twists
     copy_state(poses[begin], twists[begin], pose, twist)
     for sample in range(begin, len(poses) - 1):
         for step in range(every):
@@ -174,9 +174,10 @@ def fixed_steps(system, storage, begin, poses, twists, tableau, iterations, dt, 
     return len(poses) - 1
 
 
-@entry
-def evaluate_samples(system, storage, begin, poses, twists, dt, reactions, accelerations):
+@inner
+def evaluate_samples(system, storage, samples, begin, dt):
     """Set the reactions and accelerations at samples `dt` apart; return the last completed sample."""
+    poses, twists, reactions, accelerations = samples.poses, samples.twists, samples.reactions, samples.accelerations
     for sample in range(begin, len(poses)):
         copy_state(poses[sample], twists[sample], storage.pose, storage.twist)
         accelerate(system, storage.pose, storage.twist, sample * dt, storage.acceleration)

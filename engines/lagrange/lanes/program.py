@@ -17,9 +17,10 @@ from llvmlite import ir
 from numpy.typing import NDArray
 
 from engines.lagrange.compiled.solve import WELL_CONDITIONED
-from engines.lagrange.dynamics import PROJECTION_ITERATIONS, Tableau
+from engines.lagrange.dynamics import PROJECTION_ITERATIONS
 from engines.lagrange.lanes.code import COUNT, POINTER, Code, Places
 from engines.lagrange.lanes.number import LANES, REAL, VECTOR, Number, equations, largest, least
+from engines.lagrange.methods import Tableau
 from engines.lagrange.records import CLOSED, Records, RowSelection, System
 from engines.lagrange.system import Key
 
