@@ -16,7 +16,7 @@ from reports.cli.terminal import Terminal, opened
 from reports.model.ending import BadInput, FileTrouble
 from reports.run.files import folder_for, is_stream, temporary_folder, write_whole
 from reports.site.animated import Shown, animation, ffmpeg, film, shown
-from reports.site.lessons import take_like
+from reports.site.live.scenes import take_like
 from reports.write.tables import number
 
 KINDS = ("svg", "gif", "mp4")

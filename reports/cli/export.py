@@ -18,7 +18,7 @@ from reports.cli.streams import written
 from reports.model.ending import BadInput, visible
 from reports.run.files import is_stream, write_whole
 from reports.site.animated import animation, shown
-from reports.site.lessons import take_like
+from reports.site.live.scenes import take_like
 
 INSTANTS = 10  # Number of instants of the exact motion in the comments.
 WRITER_MEMBERS = ("suffix", "write", "commented")  # Every writer must have these members.

@@ -37,7 +37,7 @@ from reports.run.worker import worker_count
 from reports.search import page as search_page
 from reports.search import plan
 from reports.site.animated import animation, shown
-from reports.site.lessons import take_like
+from reports.site.live.scenes import take_like
 from reports.write.csv_files import DIGESTS, as_published, digests_csv, read_published
 from reports.write.tables import step_words
 from reports.write.templates import without_dead_links

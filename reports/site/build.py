@@ -25,10 +25,10 @@ from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
 from reports.site.lesson import Experiment, Guess, Lesson, LessonQuantity, SiteSource
-from reports.site.lessons import LESSONS, PROBLEMS, take_like
-from reports.site.lessons.linkages import FOUR_BAR
+from reports.site.lessons import LESSONS, PROBLEMS
 from reports.site.live.data import data, first_picture
 from reports.site.live.models import own_values
+from reports.site.live.scenes import FREE, take_like
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED, Live
 from reports.site.markdown import cards, render_html, render_lecture, section, title
 from reports.site.munk2d import COMPILED, compiled_from
@@ -224,19 +224,19 @@ def _about(source: SiteSource) -> str:
 def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[str, Any]:
     """Return the values of lesson.html; `quote` returns the HTML of a section of the results page."""
     parts = []
-    for part, experiment in zip(lesson.parts, lesson.experiments, strict=True):
+    for experiment in lesson.experiments:
         live = lesson.scene(experiment.scene)
         start = live.located(experiment.before)
         values, words = _start_texts(live, experiment), live.words()
-        guesses = experiment.guesses or (Guess(),) * len(part.answers)  # without a change nothing is run
+        guesses = experiment.guesses or (Guess(),) * len(experiment.answers)  # without a change nothing is run
         body = quote(experiment.section) if experiment.section else None
         parts.append(
             {
-                "heading": part.heading,
-                "text": _with_drags(part.text, values, words),
-                "question": Markup(render_html(part.question).removeprefix("<p>").removesuffix("</p>\n")),
-                "answers": [_answer(live, *each) for each in zip(part.answers, guesses, strict=True)],
-                "after_words": _with_drags(part.after, values, words),
+                "heading": experiment.heading,
+                "text": _with_drags(experiment.text, values, words),
+                "question": Markup(render_html(experiment.question).removeprefix("<p>").removesuffix("</p>\n")),
+                "answers": [_answer(live, *each) for each in zip(experiment.answers, guesses, strict=True)],
+                "after_words": _with_drags(experiment.after_words, values, words),
                 "scene": lesson.scenes.index(live),
                 "before": start,
                 "after": live.located(experiment.after),
@@ -306,9 +306,8 @@ def _with_drags(text: str, values: Mapping[str, str], words: Mapping[str, str]) 
 
 
 def _front_picture(source: SiteSource) -> str:
-    live = FOUR_BAR.scene("let go")
-    stored = live.stored()
+    stored = FREE.stored()
     cells = {label: stored[name, 0].cell for name, label in NAMES.items()}
     methods = tuple((f"{label} {SHIPPED}", cell.engine, cell.every) for label, cell in cells.items())
-    take = replace(take_like(live.scene, methods), samples=live.frames)
+    take = replace(take_like(FREE.scene, methods), samples=FREE.frames)
     return animation(shown(take, source.answers), "A four-bar linkage falls")

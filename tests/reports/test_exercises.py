@@ -14,7 +14,6 @@ from reference.chapter.errata import acceleration_of_g, accelerations, velocitie
 from reference.chapter.skates import commutator_displacement, sidestep
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reports.pages.errata.page import ERRATA as SLIPS
-from reports.site.lesson import exercise_of
 from reports.site.lessons import LESSONS
 from tests.reports.page_scripts import run_in_node
 
@@ -189,8 +188,8 @@ def test_the_tables_of_the_lessons_have_the_numbers_that_the_page_computes(page)
     rows = [
         (row[1], re.findall("`(.+?)`", row[0]))
         for lesson in LESSONS
-        for part in lesson.parts
-        for row in re.finditer(r"^\| ([^|]+) \| .*`.*$", part.after, re.MULTILINE)
+        for part in lesson.experiments
+        for row in re.finditer(r"^\| ([^|]+) \| .*`.*$", part.after_words, re.MULTILINE)
     ]
     assert {number for number, _ in rows} == {*page["errata"]}
     for number, cells in rows:
@@ -208,11 +207,6 @@ def test_a_solution_contains_the_answer_of_the_page(answers, name):
 
 def test_each_lesson_has_three_exercises():
     assert {lesson.name: len(lesson.exercises) for lesson in LESSONS if len(lesson.exercises) != 3} == {}
-
-
-def test_an_exercise_without_a_solution_is_refused():
-    with pytest.raises(ValueError, match="'Speed: `speed` \\[m\\]': an exercise has"):
-        exercise_of("Speed: `speed` [m]\n\nHow fast?")
 
 
 def test_the_shapes_of_the_page_are_the_centrodes_of_the_reference(page):

@@ -29,9 +29,10 @@ from reports.site.animated import PAUSE, Shown, animation, film, shown
 from reports.site.build import MARKER, build, explored
 from reports.site.folder import compressed_size, refuse_strangers, write_site
 from reports.site.generator import NEEDED, Documents, build_html, reference_sources
-from reports.site.lesson import Part, SiteSource, part_of
-from reports.site.lessons import LESSONS, take_like
+from reports.site.lesson import Cause, Claim, Exercise, Experiment, Guess, Lesson, SiteSource, read_lesson
+from reports.site.lessons import LESSONS
 from reports.site.live.data import forces
+from reports.site.live.scenes import FREE, SCENES, take_like
 from reports.site.markdown import render_html, render_lecture, section
 from reports.site.packages import NotFetched, Package, fetch_package, printed
 from tests import ROOT
@@ -85,12 +86,98 @@ def test_the_forces_at_the_coupler_sum_to_mass_times_acceleration():
     assert by_joint["B"][1] - by_joint["C"][1] == pytest.approx(wanted, rel=1e-6)
 
 
-def test_the_texts_of_an_experiment_are_parsed_and_need_one_right_answer():
-    text = "Heading\n\nWords\nmore.\n\n> What?\n>\n> - one\n> - **two**\n> - three\n\nBecause."
-    answers = (("one", False), ("two", True), ("three", False))
-    assert part_of(text) == Part("Heading", "Words\nmore.", "What?", answers, "Because.")
-    with pytest.raises(ValueError, match="three answers, one of them right"):
-        part_of(text.replace("**", ""))
+LESSON = """# A title
+
+```toml
+page = "four_bar"
+scenes = ["free_four_bar-let-go"]
+```
+
+## Heading
+
+```toml
+scene = "let go"
+before = { density = [1.0, 100.0, 1.0] }
+after = { bias = "the method's value" }
+claims = [{ engine = "munk", most = 1 }]
+causes = [{ change = { iterations = 1 }, engine = "mujoco", of = "gap", least = 2.0 }]
+guesses = [{}, { times = { munk = 1.0 } }, { change = {} }]
+overlays = ["centre"]
+widget = "cam"
+```
+
+Words
+more.
+
+> What?
+>
+> - one
+> - **two**
+> - three
+
+Because.
+
+## Exercises
+
+### Speed: `speed` [m/s]
+
+How fast?
+
+> 2 m/s.
+"""
+
+
+def test_a_lesson_is_read_from_its_file(tmp_path):
+    (tmp_path / "new.md").write_text(LESSON, "utf-8")
+    lesson = read_lesson(tmp_path / "new.md", SCENES)
+    texts = {"heading": "Heading", "text": "Words\nmore.", "question": "What?", "after_words": "Because."}
+    settings = {"before": {"density": (1.0, 100.0, 1.0)}, "after": {"bias": None}}
+    expected = Experiment(
+        "let go",
+        claims=(Claim("munk", most=1.0),),
+        causes=(Cause("mujoco", 2.0, of="gap", change={"iterations": 1}),),
+        guesses=(Guess(), Guess(times={"munk": 1.0}), Guess({})),
+        overlays=("centre",),
+        widget="cam",
+        answers=(("one", False), ("two", True), ("three", False)),
+        **texts,
+        **settings,
+    )
+    exercise = Exercise("Speed", "speed", "m/s", "How fast?", "2 m/s.")
+    assert lesson == Lesson("new", "A title", "four_bar", (FREE,), (expected,), (exercise,))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place", "reason"),
+    [
+        ("page =", "pages =", "the title", "the first TOML block has pages, scenes instead of page and scenes"),
+        ("_bar-let", "_bar-set", "the title", "no scene has the key 'free_four_bar-set-go'"),
+        ('scene = "let go"', "", "Heading", "an unknown field, or lacks a field: scene"),
+        ('"let go"', '"driven"', "Heading", "the lesson has no scene 'driven'; its scenes are 'let go'"),
+        ("overlays", "overlay", "Heading", "an unknown field, or lacks a field: overlay"),
+        ('"centre"', '"centres"', "Heading", "overlays is 'centres'; there are reactions, centre, friction"),
+        ('"munk"', '"pymunk"', "Heading", "engine is 'pymunk'; there are munk, mujoco, exact"),
+        ("most = 1", 'most = "1"', "Heading", "most is '1', which has a wrong type"),
+        ("iterations = 1", "iterations = 3", "Heading", "iterations has no value 3; there are None, 1, 2, 5"),
+        ("iterations = 1", "sweeps = 1", "Heading", "no control is named 'sweeps'; there are steps, crank"),
+        ('"cam"', '"cams"', "Heading", "the widget 'cams' has no script in assets"),
+        ("[{}, {", "[{", "Heading", "2 guesses for 3 answers"),
+        ("**two**", "two", "Heading", "a question has three answers, one of them right"),
+        ("> - three\n", "", "Heading", "a question has three answers, one of them right"),
+        ('widget = "cam"', 'text = "x"', "Heading", "text stands below the TOML block"),
+        ('widget = "cam"', "widget = cam", "Heading", "Invalid value"),
+        ("## Heading\n\n```toml", "## Heading\n\n```", "Heading", "a block ```toml must follow the heading"),
+        ("> 2 m/s.", "2 m/s.", "Speed: `speed` [m/s]", "an exercise has a heading, an answer, a unit and a solution"),
+    ],
+)
+def test_a_lesson_of_another_form_is_refused_in_one_line(old, new, place, reason, tmp_path):
+    assert LESSON.count(old) == 1
+    (tmp_path / "new.md").write_text(LESSON.replace(old, new), "utf-8")
+    with pytest.raises(ValueError, match=r"^new\.md, ") as refused:
+        read_lesson(tmp_path / "new.md", SCENES)
+    assert str(refused.value).startswith(f"new.md, {place!r}: ")
+    assert reason in str(refused.value)
+    assert "\n" not in str(refused.value)
 
 
 def test_a_section_ends_at_a_heading_of_its_rank_or_above_and_not_at_a_comment_in_code():

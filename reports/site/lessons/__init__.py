@@ -1,29 +1,19 @@
-"""The lessons with their scenes and experiments. The text of a lesson is a Markdown file in this folder."""
+"""The lessons, each of which is a Markdown file in this folder. reports/site/lesson.py describes its form."""
 
-from engines import Engine
-from reference.scene import Scene
-from reports.site.animated import Take
-from reports.site.lessons.chains import CHAINS
-from reports.site.lessons.errata import ERRATA
-from reports.site.lessons.linkages import CENTRODES, FOUR_BAR, PENDULUM, SLIDER_CRANK
-from reports.site.lessons.rolling import CAM, GEARS, ROLLING
-from reports.site.lessons.skates import PARKING, SKATE, WHEELS
+from pathlib import Path
 
-# The lessons by the chapter's types of problems, in the chapter's order.
+from reports.site.lesson import read_lesson
+from reports.site.live.scenes import SCENES
+
+# The names of the lessons by the chapter's types of problems, in the chapter's order.
+ORDER = {
+    "I. Open and closed chains": ("pendulum", "chains", "slider_crank", "four_bar"),
+    "II. Rolling": ("rolling", "gears", "centrodes", "cam"),
+    "III. Skates and wheels": ("skate", "parking", "wheels"),
+    "The text of the chapter": ("errata",),
+}
 PROBLEMS = {
-    "I. Open and closed chains": (PENDULUM, CHAINS, SLIDER_CRANK, FOUR_BAR),
-    "II. Rolling": (ROLLING, GEARS, CENTRODES, CAM),
-    "III. Skates and wheels": (SKATE, PARKING, WHEELS),
-    "The text of the chapter": (ERRATA,),
+    problem: tuple(read_lesson(Path(__file__).with_name(f"{name}.md"), SCENES) for name in names)
+    for problem, names in ORDER.items()
 }
 LESSONS = tuple(lesson for lessons in PROBLEMS.values() for lesson in lessons)
-
-
-def take_like(scene: Scene, methods: tuple[tuple[str, Engine, int], ...]) -> Take:
-    """Return a take of a scene with these methods. The take has the look of the scene in a lesson."""
-    plain = next((live for lesson in LESSONS for live in lesson.scenes if live.scene.name == scene.name), None)
-    if plain is None:
-        return Take(scene, methods)
-    bodies = {body.name for body in scene.mechanism().bodies}
-    ends = {body: points for body, points in plain.ends.items() if body in bodies}
-    return Take(scene, methods, ends=ends, axle=plain.axle)

@@ -152,9 +152,13 @@ class Live(Look):
         return {"steps": "step", **engines, **own, **{slider.field: slider.label for slider in self.sliders}}
 
     def located(self, given: Mapping[str, Any]) -> dict[str, int]:
-        """Return the index of each control's value. Raises KeyError for an unknown control, ValueError for an unknown
-        value."""
+        """Return the index of each control's value. Raises ValueError for an unknown control or value."""
         controls = self.controls()
+        for name, value in given.items():
+            if name not in controls:
+                raise ValueError(f"no control is named {name!r}; there are {', '.join(controls)}")
+            if value not in (values := controls[name].values):
+                raise ValueError(f"{name} has no value {value!r}; there are {', '.join(map(str, values))}")
         return {name: controls[name].values.index(value) for name, value in given.items()}
 
     def stored(self) -> dict[tuple[Name, int], Motion]:
