@@ -133,7 +133,7 @@ def report(results: str | Path = "crosscheck-results") -> Path:
     """Write pages, charts and tables of the stored results; return the first page's path. Raises ValueError."""
     from reports.cli.report import write_report
 
-    return write_report(Path(results)).folder / "index.md"
+    return write_report(Path(results))[0] / "index.md"
 
 
 def search(

@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Annotated
@@ -56,21 +56,13 @@ def report(
     ] = False,
 ) -> None:
     """Write pages, charts, errors.csv and timings.csv from the stored results."""
-    for sentence in write_report(results, publish).sentences:
+    for sentence in write_report(results, publish)[1]:
         Terminal(140).say(sentence)
 
 
-@dataclass(frozen=True)
-class WrittenReport:
-    """The folder of a report, the names of its files, and sentences for the user."""
-
-    folder: Path
-    files: tuple[str, ...]
-    sentences: tuple[str, ...]
-
-
-def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport:
-    """Write pages, charts and tables of the rows stored in `results`. Raises BadInput if nothing is stored."""
+def write_report(results: Path = FOLDER, publish: bool = False) -> tuple[Path, list[str]]:
+    """Write pages, charts and tables of the rows stored in `results`; return their folder and sentences for the user.
+    Raises BadInput if nothing is stored."""
     if publish:
         refuse_outside_a_checkout()
     refuse_file(results)
@@ -81,8 +73,7 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
         if not searched:
             raise nothing
         write_files({folder / name: text for name, text in searched.items()})
-        line = f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"
-        return WrittenReport(folder, tuple(searched), (line,))
+        return folder, [f"{len(searched)} files written to {folder}: the search alone, since no cells are stored"]
     if publish:  # If no searches are stored, their published pages remain.
         paths = {name: folder / name for name in SEARCHED if (folder / name).is_file()}
         searched = searched or {name: path.read_text(encoding="utf-8") for name, path in paths.items()}
@@ -98,8 +89,7 @@ def write_report(results: Path = FOLDER, publish: bool = False) -> WrittenReport
         readme = CHECKOUT / "README.md"
         texts[readme] = index.render_readme(readme.read_text(encoding="utf-8"), material)
     write_files(texts)
-    line = f"{len(files)} files written. Read this first: {folder / 'index.md'}"
-    return WrittenReport(folder, tuple(files), (line, left) if left else (line,))
+    return folder, [f"{len(files)} files written. Read this first: {folder / 'index.md'}", *filter(None, [left])]
 
 
 def material_of(page: Page, store: Store) -> Material:
