@@ -70,9 +70,11 @@ def run_item(function: Callable[[Any], Any], paths: tuple[str, ...], item_and_ve
     except (ImportError, AttributeError) as error:
         return Refusal(describe(error))
     remote = versions_of(item, folders=OURS)
-    names = sorted(name for name in {*local, *remote} if local.get(name) != remote.get(name))
-    there, here = (lambda name: remote.get(name, "missing")), (lambda name: local.get(name, "missing"))
-    return Refusal("; ".join(f"{n} {there(n)} there, {here(n)} here" for n in names)) if names else function(item)
+    different = sorted(name for name in {*local, *remote} if local.get(name) != remote.get(name))
+    if different:
+        pairs = ((name, remote.get(name, "missing"), local.get(name, "missing")) for name in different)
+        return Refusal("; ".join("{} {} there, {} here".format(*pair) for pair in pairs))
+    return function(item)
 
 
 def run_chunk(data: bytes) -> bytes:
