@@ -13,8 +13,7 @@ from reports.cli.report import published, refuse_outside_a_checkout, write_files
 from reports.cli.terminal import Terminal, interruptible, opened
 from reports.model.cells import Cell
 from reports.model.measure import Measurement
-from reports.pages.atlas.columns import FILE, as_csv, columns_of, read, run_columns, stored_column
-from reports.pages.atlas.subjects import MAPS
+from reports.pages.atlas.maps import FILE, MAPS, as_csv, columns_of, read, run_columns, stored_column
 from reports.run import cluster
 from reports.run.running import run_into
 

@@ -17,7 +17,7 @@ from reports.model.cells import Cell
 from reports.model.convergence import judged
 from reports.model.measure import Measurement
 from reports.model.page import Material, Page
-from reports.pages.atlas.subjects import MAPS
+from reports.pages.atlas.maps import MAPS
 from reports.pages.findings import findings, pictures
 from reports.pages.index import COMPARED_PICTURE, compared_lines, compared_picture, engines_of, render_index
 from reports.plots import work_precision as charts

@@ -17,10 +17,8 @@ from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
 from reports.model.ending import FINE, REFUSED
 from reports.model.outcomes import TORN
-from reports.pages.atlas import columns as map_columns
-from reports.pages.atlas import page, subjects
-from reports.pages.atlas.columns import FILE, NOT_RUN, MapColumn, StoredColumn
-from reports.pages.atlas.subjects import MAPS, StabilityMap
+from reports.pages.atlas import maps, page
+from reports.pages.atlas.maps import FILE, MAPS, NOT_RUN, MapColumn, StabilityMap, StoredColumn
 from reports.run.running import run_items
 from tests.reports.test_command_line import call, one_line
 from tests.toys import Disc, FailingToy, Toy
@@ -52,16 +50,16 @@ def test_every_map_has_scenes_steps_and_a_frequency_over_its_whole_range():
 
 def test_frequencies_of_maps_agree_with_closed_forms_and_fine_grids():
     # The squared frequency of one bar is 3/2 g/l. Two equal bars have the squared frequencies (3 +- 6/sqrt(7)) g/l.
-    assert subjects.stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
+    assert maps.stiffest_hanging(LinkPendulum(links=1)) == pytest.approx(math.sqrt(1.5 * 9.81), rel=1e-12)
     two = LinkPendulum(links=2, length=0.7)
-    assert subjects.stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
-    scene = subjects.near_the_largest_offset(1e-3)
+    assert maps.stiffest_hanging(two) == pytest.approx(math.sqrt((3 + 6 / math.sqrt(7)) * 9.81 / 0.7), rel=1e-12)
+    scene = maps.near_the_largest_offset(1e-3)
     angles = np.linspace(0, 2 * math.pi, 200_001)
-    assert subjects.rod_rate(scene) == pytest.approx(np.abs(scene.shape.rates(angles)[0]).max() * scene.rate, rel=1e-3)
+    assert maps.rod_rate(scene) == pytest.approx(np.abs(scene.shape.rates(angles)[0]).max() * scene.rate, rel=1e-3)
     # An ellipse with semi-axes a > b oscillates about its flat side with omega^2 = m g (a^2/b - b) / (I + m b^2).
     a, b = 0.5, 0.1
     inertia = (a**2 + b**2) / 4
-    assert subjects.rocking(subjects.ellipse(b / a)) == pytest.approx(
+    assert maps.rocking(maps.ellipse(b / a)) == pytest.approx(
         math.sqrt(9.81 * (a**2 / b - b) / (inertia + b**2)), rel=1e-3
     )
 
@@ -86,7 +84,7 @@ def test_at_the_tearing_step_the_weight_opens_the_joint_by_the_bound():
     limit = 10 * 0.1 / (TORN * mechanism.length_scale)
 
     def gives(soft: Soft) -> float:
-        return map_columns.tearing_step(scene, mechanism, soft, 1e-3, 1e-1)  # type: ignore[arg-type]
+        return maps.tearing_step(scene, mechanism, soft, 1e-3, 1e-1)  # type: ignore[arg-type]
 
     assert [gives(Soft(limit * 0.99)), gives(Soft(limit * 1.01))] == [0.0, math.inf]
     # The tearing step is 1e-2 s; 81 steps over two decades are searched.
@@ -102,14 +100,14 @@ def test_without_the_velocity_term_the_centripetal_acceleration_determines_the_t
     limit = scene.rate**2 * scene.length / 2 / (TORN * mechanism.length_scale)
     for factor, step in ((0.99, 0.0), (1.01, math.inf)):
         soft = Soft(limit * factor, 0.0, complete=False)
-        assert map_columns.tearing_step(scene, mechanism, soft, 1e-3, 1e-1) == step  # type: ignore[arg-type]
+        assert maps.tearing_step(scene, mechanism, soft, 1e-3, 1e-1) == step  # type: ignore[arg-type]
 
 
 def drawn_of(outcomes: str, stride: int) -> tuple[str, str]:
     """The letters that are stored for a column with these outcomes, and the letters that are drawn."""
     column = MapColumn(TOYS, 1.0, Disc(), Toy(), tuple((10, every) for every in range(1, len(outcomes) + 1)))
     run = lambda cells: {cell: SimpleNamespace(outcome=outcomes[cell.every - 1]) for cell in cells}  # noqa: E731
-    rows: Any = map_columns.run_columns([column], run, stride)[0]  # type: ignore[arg-type]
+    rows: Any = maps.run_columns([column], run, stride)[0]  # type: ignore[arg-type]
     stored = "".join(rows[index].outcome if index in rows else NOT_RUN for index in range(len(outcomes)))
     assert line(1.0, stored).run_count == len(rows)
     return stored, "".join(outcome.letter for outcome in line(1.0, stored).outcome_of_steps)
@@ -132,8 +130,8 @@ def test_bisection_finds_each_border_of_regions_that_are_wider_than_the_stride()
 def test_a_stored_column_has_errors_of_finished_runs_and_an_abort_affects_its_own_cells_only():
     steps = tuple((10, every) for every in range(1, 6))
     columns = [MapColumn(TOYS, 2.0, Disc(), engine, steps) for engine in (Toy(), FailingToy("abort"))]
-    rows = map_columns.run_columns(columns, lambda cells: dict(run_items(cells, workers=1)), 4)
-    lines = [map_columns.stored_column(column, some) for column, some in zip(columns, rows, strict=True)]
+    rows = maps.run_columns(columns, lambda cells: dict(run_items(cells, workers=1)), 4)
+    lines = [maps.stored_column(column, some) for column, some in zip(columns, rows, strict=True)]
     assert [stored.outcomes for stored in lines] == ["·===·", "A===A"]
     assert [math.isnan(error) for error in lines[0].errors] == [letter == NOT_RUN for letter in lines[0].outcomes]
     assert lines[0].errors[0] == pytest.approx(math.log10(rows[0][0].angle), abs=0.05)
@@ -159,7 +157,7 @@ def test_the_command_writes_its_file_and_continues_an_earlier_run(monkeypatch, t
     text = ("atlas", "--scenes", "length", "--points", "3", "--workers", "1")
     assert call(*text) == FINE
     folder = tmp_path / "crosscheck-results" / "atlas"
-    result = map_columns.read(folder / FILE)
+    result = maps.read(folder / FILE)
     assert {item.method for item in result} == {method_name(engine) for engine in SHOWN}
     assert all(len(item.outcomes) == 3 for item in result)
     assert f"{3 * 3 * len(SHOWN)} of {3 * 3 * len(SHOWN)} cells were run" in capsys.readouterr().out

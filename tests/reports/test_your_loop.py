@@ -25,8 +25,7 @@ from reports.model.convergence import judged
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.pages.your_loop import page
-from reports.pages.your_loop.experiments import MILLISECONDS_PER_SAMPLE, run_lines
-from reports.pages.your_loop.linkages import LINKAGES
+from reports.pages.your_loop.experiments import LINKAGES, MILLISECONDS_PER_SAMPLE, run_lines
 from reports.write.page_tables import Program, advice, advised_programs
 from tests.committed_rows import committed_rows, page_rows
 from tests.reports.test_pages import MECHANISMS, texts, undrawn

@@ -21,8 +21,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
-from reports.pages.atlas.columns import FILE, StoredColumn, read
-from reports.pages.atlas.subjects import MAPS, StabilityMap
+from reports.pages.atlas.maps import FILE, MAPS, StabilityMap, StoredColumn, read
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.columns import displayed_variant

@@ -17,7 +17,7 @@ from reference.scenes.pendulum.link import BarPendulum, PointPendulum
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, SpinningRing, TenLinks
 from reports.model.page import FEATURED, Failure, Material, Observation
 from reports.model.tasks import Task, Values
-from reports.pages.atlas.subjects import stiffest_hanging
+from reports.pages.atlas.maps import stiffest_hanging
 from reports.pages.common import MAIN_METHODS, PUBLIC, cells, described, scene_page, sweeps
 from reports.plots.mechanisms import Strip, stroboscope
 from reports.plots.theme import svg

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import statistics
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -30,52 +32,15 @@ from reports.plots.looks import colour, mark
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.tables import markdown, number
 
-# (engine, scenes, targets, reason) of cells in which the judge misses its aim; empty tuples match everything. The first
-# entry that matches a cell is its reason.
-Reason = tuple[str, tuple[str, ...], tuple[float, ...], str]
-REASONS: tuple[Reason, ...] = (
-    (
-        ONE_COORDINATE,
-        (),
-        (),
-        "it has one equation and no joint forces, where each evaluation of the judge solves eight rows for nine "
-        "coordinates; the fixed cost of each run of the judge is about as large as this whole solution",
-    ),
-    (
-        "pinocchio, C++ alone",
-        (),
-        (),
-        "only evaluations are counted, in the coordinates of a tree; the judge's time is that of whole steps with "
-        "projections, and of the fixed cost of a run",
-    ),
-    (
-        "mujoco",
-        ("rolling-ellipse",),
-        (1e-3,),
-        "most of the judge's time is its table of contacts, which Python computes during the run for any error",
-    ),
-    (
-        "",
-        ("sleigh", "car-and-trailer", "two-feet"),
-        (1e-3,),
-        "the engine needs ten or twenty steps of order 4, and more than half of the judge's time is its fixed cost",
-    ),
-    (
-        "",
-        (),
-        (1e-3,),
-        "ten to forty steps of order 4 in the coordinates of a tree are enough, so a high order saves little; the "
-        "judge has three coordinates for each body, and the fixed cost of a run",
-    ),
-)
+REASONS = tomllib.loads(Path(__file__).with_name("reasons.toml").read_text(encoding="utf-8"))["reasons"]
 NO_REASON = "not explained yet"
 
 
 def reason_of(row: SpeedRow) -> str:
-    for engine, scenes, targets, reason in REASONS:
-        is_scene, is_target = not scenes or row.scene in scenes, not targets or row.target in targets
-        if engine in ("", row.engine) and is_scene and is_target:
-            return reason
+    cell = {"engines": row.engine, "scenes": row.scene, "targets": row.target}
+    for entry in REASONS:
+        if all(cell[key] in entry.get(key, (cell[key],)) for key in cell):
+            return " ".join(entry["reason"].split())
     return NO_REASON
 
 

@@ -15,8 +15,7 @@ from reference.scenes.catalogue import scene
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
-from reports.pages.your_loop.experiments import COMMIT, COUNT, MILLISECONDS_PER_SAMPLE, BeforeAndAfter, Fresh
-from reports.pages.your_loop.linkages import LINKAGES
+from reports.pages.your_loop.experiments import COMMIT, COUNT, LINKAGES, MILLISECONDS_PER_SAMPLE, BeforeAndAfter, Fresh
 from reports.versions.table import released
 from reports.write.page_tables import program
 from reports.write.row_tables import error_words
