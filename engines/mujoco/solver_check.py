@@ -8,7 +8,6 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from scipy.linalg import get_lapack_funcs
 
 from engines import Unsupported
 from engines.mujoco.model import MuJoCoModel, multiply_compliances
@@ -20,8 +19,6 @@ SOLVED_RESIDUAL = 1e-6
 # Largest permitted fraction of the error that remains after an iteration of Newton's method. Three iterations then
 # reduce the error to rounding. In 850 scenes and random mechanisms the fraction is at most 0.08, with three exceptions.
 MAX_REMAINING_ERROR = 0.1
-
-_factorise, _inverse_condition = get_lapack_funcs(("potrf", "pocon"), dtype=np.float64)
 
 
 def solver_residual(compiled: Any, data: Any) -> float:
@@ -75,14 +72,16 @@ def _remaining_error(compiled: Any, data: Any) -> float:
     """
     if not data.nefc:
         return 0.0
+    from scipy.linalg.lapack import dpocon, dpotrf  # pyright: ignore[reportAttributeAccessIssue] (missing in the stubs)
+
     hessian = full_inertia(compiled, data)
     rows = data.efc_J.reshape(data.nefc, compiled.nv)
     hessian += (rows.T / data.efc_R) @ rows
     scale = 1 / np.sqrt(np.diag(hessian))
     hessian *= scale * scale[:, None]
     size = float(np.abs(hessian).sum(axis=0).max())
-    factor, failed = _factorise(hessian)
-    inverse, _ = _inverse_condition(factor, size)
+    factor, failed = dpotrf(hessian)
+    inverse, _ = dpocon(factor, size)
     return np.inf if failed or not inverse > 0 else float(np.finfo(float).eps / inverse)
 
 

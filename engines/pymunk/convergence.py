@@ -28,8 +28,6 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from engines.pymunk.joints.drive import find_cranks, find_turned
 from engines.remembered import by_identity
@@ -228,6 +226,9 @@ def _system(mechanism: Mechanism, pose: Array) -> _System:
 
 
 def _smallest_eigenvalue(matrix: Array, lower: Array) -> float:
+    from scipy.sparse import csc_matrix
+    from scipy.sparse.linalg import splu
+
     factors, right = splu(csc_matrix(matrix)), csc_matrix(lower)
     vector, value = np.ones(len(matrix)), 0.0
     for _ in range(200):

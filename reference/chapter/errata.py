@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from reference.checks import Positive, validated
 from reference.numerics.calculus import derivative
@@ -68,6 +67,8 @@ def closed_form(theta: float) -> tuple[float, float]:
 @validated
 def integrated(theta: float) -> Array:
     """beta and phi (2,) [rad] by integration of the printed rates, with the default tolerance of common packages."""
+    from scipy.integrate import solve_ivp
+
     span = START_ANGLES[0], theta
     return solve_ivp(lambda at, state: rates(at, *state), span, START_ANGLES[1:], rtol=1e-3, atol=1e-6).y[:, -1]
 

@@ -15,7 +15,6 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr
 
 from reference.checks import InvalidMechanism, validated
 from reference.mechanism import Mechanism
@@ -92,6 +91,8 @@ def _bracket(first: Rows, second: Rows) -> Rows:
 
 def _fields(rows: Rows, place: Place) -> list[Rows]:
     """Analytic fields that span the allowed motions near a place, by projection of the null space at the place."""
+    from scipy.linalg import qr
+
     at_place = rows(place)
     _, upper, pivot = qr(at_place.T, mode="economic", pivoting=True)  # pyright: ignore[reportAssignmentType]
     diagonal = np.abs(np.diag(upper))

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import DOP853
 
 from reference.checks import InvalidMechanism
 
@@ -52,6 +51,8 @@ class Integrated:
     states: Array  # (knots, states).
 
     def __call__(self, t: ArrayLike) -> Array:
+        from scipy.integrate import DOP853
+
         t = np.atleast_1d(np.asarray(t, dtype=float))
         if t.size and not (t.min() >= self.times[0] and t.max() <= self.times[-1]):
             raise ValueError(f"times must lie in [{self.times[0]}, {self.times[-1]}] s: the motion integrated")
@@ -72,6 +73,8 @@ def integrate(
     The allowed error of a step is `tolerance` times |y| + `unit`. For angles `unit` (states,) is 1; `units_of_motion`
     returns the units of rates. Raises IntegrationFailed if the step vanishes or a number is not finite.
     """
+    from scipy.integrate import DOP853
+
     state = np.asarray(start, dtype=float)
     units = np.broadcast_to(np.asarray(unit, dtype=float), state.shape)
     with np.errstate(invalid="ignore", over="ignore"):

@@ -12,7 +12,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ellipe, ellipeinc, elliprd, elliprf
 
 from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
@@ -45,6 +44,8 @@ class Ellipse(Curve):
 
     @cached_property
     def _round(self) -> float:
+        from scipy.special import ellipe
+
         a, b = self.along_x, self.along_y
         return float(4 * max(a, b) * ellipe(1 - min(a / b, b / a) ** 2))
 
@@ -58,6 +59,8 @@ class Ellipse(Curve):
         return np.hypot(self.along_x * np.sin(u), self.along_y * np.cos(u))
 
     def arc_of(self, p: ArrayLike) -> Array:
+        from scipy.special import ellipeinc, elliprd, elliprf
+
         u = along(p)
         half_turns = np.round(u / math.pi)
         rest = u - half_turns * math.pi

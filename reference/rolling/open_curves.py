@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import BSpline, make_interp_spline
 
 from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
 from reference.rolling.curves import Array, ByArc, Curve, along, within
 from reference.validators import of_shape
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 
 def _slope(owner: str, angle: ArrayLike) -> Array:
@@ -98,6 +100,8 @@ STILL = 1e-6
 
 def spline(parameters: Array, values: Array) -> BSpline:
     """The interpolating spline of degree 7 through values (n, ...) at increasing parameters (n,)."""
+    from scipy.interpolate import make_interp_spline
+
     return make_interp_spline(parameters, values, k=SPLINE_DEGREE)
 
 

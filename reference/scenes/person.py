@@ -12,7 +12,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig
 
 from reference.checks import Fraction, InvalidMechanism, Positive, Sign, Valid, cached_readonly, validated
 from reference.embedding import EmbeddedScene
@@ -260,6 +259,8 @@ def modes_upright(person: OneFoot) -> tuple[Array, Array]:
     For s < 0 a mode swings at sqrt(-s) rad/s; for s > 0 a mode grows like e^(sqrt(s) t). The linear equations are
     finite differences of the equations of motion.
     """
+    from scipy.linalg import eig
+
     upright, rest = np.array(UPRIGHT), np.zeros(5)
 
     def slope(step: float) -> Array:

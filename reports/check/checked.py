@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from engines import Unsupported
 from engines.loading import Kind, registered_by_key
@@ -297,6 +296,11 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
 
 def resample(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
     """Times, poses and twists with `parts` instants per sampling interval, by cubic Hermite interpolation."""
-    spline = CubicHermiteSpline(motion.t, motion.pose, motion.twist)
     t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)
-    return t, spline(t), spline(t, 1)
+    index = np.minimum(np.arange(len(t)) // parts, len(motion.t) - 2)
+    span = np.diff(motion.t)[index, None, None]
+    share = (t - motion.t[index])[:, None, None] / span
+    start, mean = motion.twist[index], (np.diff(motion.pose, axis=0)[index]) / span
+    square, cube = 3 * mean - 2 * start - motion.twist[index + 1], start + motion.twist[index + 1] - 2 * mean
+    pose = motion.pose[index] + span * share * (start + share * (square + share * cube))
+    return t, pose, start + share * (2 * square + 3 * share * cube)

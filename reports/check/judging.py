@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from engines import Unsupported
 from engines.lagrange import TRUTH, Judge, Lagrange
@@ -61,6 +60,8 @@ def soft_motion(
     """Poses (times, bodies, 3) of a motion with soft joints. Poses are NaN after the integration has failed. `give`
     returns the regularisation of the rows from the gap and the pose. twist: initial velocities (bodies, 3), by default
     those of the mechanism. The method is LSODA, since the equations are stiff."""
+    from scipy.integrate import solve_ivp
+
     count = mechanism.pose.size
     lengths = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     allowed = tolerance * np.concatenate([lengths, lengths / mechanism.time_scale])

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -78,6 +77,8 @@ class _Tangent:
 
 
 def _states(mechanism: Mechanism, t: Array, tolerance: float) -> Array:
+    from scipy.integrate import solve_ivp
+
     tangent, count = _Tangent(mechanism), mechanism.pose.size
     unit = np.tile(mechanism.pose_unit, len(mechanism.bodies))
     start = float(tangent.last @ (mechanism.inertias.reshape(-1) * mechanism.twist.reshape(-1)))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from reference.joints import Slot
@@ -17,6 +16,9 @@ from reference.trajectory import Trajectory, body_points, ground_points
 from reports.check.checked import CheckResult, SettingRun
 from reports.check.judging import ERROR_UNITS, Errors, IdealMotion
 from reports.plots.theme import LIGHT, Theme, new_figure, settings, style_axes, svg
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 Lines = list[list[list[float]]]  # (line, point, coordinate) [m].

@@ -12,11 +12,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from reports.model.cells import is_step
 from reports.model.convergence import Verdict
@@ -32,6 +30,9 @@ from reports.write.page_tables import COMPARED_STEP, advice
 from reports.write.rows import Rows, rows_of_pages
 from reports.write.templates import environment, template
 from reports.write.unmeasured import UNKNOWN_MARK, UNMEASURED
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # Size of a picture in inches. In a browser the picture has the width of a telephone's screen, 360 pixels.
 PICTURE_WIDTH, PICTURE_HEIGHT = 3.75, 2.55
@@ -68,6 +69,8 @@ def of_releases(label: str, entries: Iterable[Entry]) -> PlottedLine:
 
 def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
     """A chart with logarithmic axes; releases are equally spaced. Raises ValueError for more than four lines."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     if len(lines) > len(LINE_STYLES):
         raise ValueError(f"a finding's picture has {len(lines)} lines; it must have at most {len(LINE_STYLES)}")
     with drawing(PICTURE_HEIGHT, width=PICTURE_WIDTH) as figure:

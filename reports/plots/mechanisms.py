@@ -8,12 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
@@ -21,6 +18,10 @@ from reference.plane import rotated
 from reference.scene import Scene
 from reference.trajectory import body_points, ground_points
 from reports.plots.theme import LIGHT, bare, drawing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -52,6 +53,8 @@ def configurations(
     """A panel for each reference pose in `truth` (panels, bodies, 3). `others` maps a method to (poses (panels, bodies,
     3), role of the colour, dashes). A method is drawn in panels where its error is visible. The legend marks methods
     without a visible error."""
+    from matplotlib.lines import Line2D
+
     others = others or {}
     looks = {
         name: {"color": getattr(LIGHT, colour), "linewidth": 1.4, "linestyle": dashes}

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
 from reports.plots.theme import FIGURE_WIDTH, LIGHT, drawing, style_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 Array = NDArray[np.float64]
 
@@ -117,6 +119,8 @@ def _height(panel: Panel, width: float) -> float:
 
 
 def _draw(spot: Axes, panel: Panel, handles: dict[str, Line2D]) -> None:
+    from matplotlib.lines import Line2D
+
     style_axes(spot)
     spot.set_title(panel.title, loc="left", fontsize=9, color=LIGHT.ink)
     for index, path in enumerate(panel.paths):

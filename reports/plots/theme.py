@@ -7,14 +7,13 @@ import re
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatterSciNotation
 from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FIGURE_WIDTH = 9.2  # inches; GitHub does not scale pictures of this width
 
@@ -95,11 +94,15 @@ DIGESTED = re.compile(r"\b([mpCh][0-9a-f]{10})\b")
 
 
 def settings() -> AbstractContextManager[None]:
+    import matplotlib
+
     plain: dict[Any, Any] = {**matplotlib.rcParamsDefault, **RC_SETTINGS}
     return matplotlib.rc_context(plain)
 
 
 def new_figure(height: float, theme: Theme = LIGHT, width: float = FIGURE_WIDTH) -> Figure:
+    from matplotlib.figure import Figure
+
     return Figure(figsize=(width, height), facecolor=theme.paper, layout="constrained")
 
 
@@ -112,28 +115,6 @@ def drawing(height: float, width: float = FIGURE_WIDTH) -> Iterator[Figure]:
 def note(panel: Axes, text: str, point: ArrayLike, offset: tuple[float, float], color: str, **style: Any) -> None:
     """Write a text at an offset [1/72 inch] from a data point."""
     panel.annotate(text, point, xytext=offset, textcoords="offset points", color=color, **style)  # type: ignore[arg-type]
-
-
-TIMES_SIGN = "\N{MULTIPLICATION SIGN}"
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-class PowersOfTen(LogFormatterSciNotation):
-    """Labels of a logarithmic axis as texts such as 10⁻³, since matplotlib parses formulas slowly."""
-
-    def __call__(self, x: float, pos: int | None = None) -> str:
-        if not super().__call__(x, pos):  # a minor tick without a label
-            return ""
-        digits, power = f"{x:.0e}".split("e")
-        return f"{'' if digits == '1' else digits + TIMES_SIGN}10{str(int(power)).translate(SUPERSCRIPTS)}"
-
-
-def _in_powers(figure: Figure) -> None:
-    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) if axis.get_scale() == "log"):
-        if type(axis.get_major_formatter()) is LogFormatterSciNotation:
-            axis.set_major_formatter(PowersOfTen())
-        if type(axis.get_minor_formatter()) is LogFormatterSciNotation:
-            axis.set_minor_formatter(PowersOfTen(labelOnlyBase=False))
 
 
 def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
@@ -163,8 +144,12 @@ def bare(panel: Axes, title: str) -> None:
 def svg(figure: Figure, title: str) -> str:
     """A figure in the colours of LIGHT as a reproducible SVG text. A stylesheet replaces the colours in a dark scheme.
     `title` is the text for screen readers."""
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    from reports.plots.powers import label_in_powers
+
     out = io.StringIO()
-    _in_powers(figure)
+    label_in_powers(figure)
     with settings():
         FigureCanvasSVG(figure).print_svg(out, metadata={"Date": None, "Creator": None, "Title": title})
     text = _renumbered(out.getvalue()).replace("'DejaVu Sans'", FONTS)

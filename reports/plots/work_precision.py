@@ -6,21 +6,21 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
-from scipy.spatial import KDTree
 
 from reports.model.convergence import groups
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.plots.looks import colour, family_of, look, mark
-from reports.plots.theme import LIGHT, PowersOfTen, drawing, new_figure, note, settings, style_axes
+from reports.plots.theme import LIGHT, drawing, new_figure, note, settings, style_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 PANEL_COLUMNS = 2
 LONGEST_OF_FOUR = 30  # letters; a line of the legend is too short for four longer names
@@ -87,6 +87,10 @@ def _panels(scenes: Sequence[str], height: float) -> tuple[Figure, list[Axes]]:
 
 
 def _finish(panel: Axes) -> None:
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    from reports.plots.powers import PowersOfTen
+
     for axis, (low, high) in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
         # A range below two decades may contain only one power of ten, and a single tick does not show the scale.
         narrow = math.log10(high / low) < 2
@@ -108,6 +112,8 @@ Pairs = list[tuple[float, float]]
 def _chart(
     shown: Sequence[Measurement], scenes: Sequence[str], field: str, label: str, series: Callable[..., Pairs]
 ) -> tuple[Figure, list[Axes], list[Line2D]]:
+    from matplotlib.lines import Line2D
+
     variants = _variants_by_engine(shown)
     figure, panels = _panels(scenes, 3.6)
     for index, (panel, scene) in enumerate(zip(panels, scenes, strict=True)):
@@ -127,6 +133,7 @@ def _chart(
 def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle") -> Figure:
     """A panel for each scene with error against CPU time and the Pareto front of all rows. A featured method is a line
     through its rows from `forwards`. Rows of other methods are small grey dots."""
+    from matplotlib.lines import Line2D
 
     def pairs(members: Iterable[Measurement]) -> Pairs:
         return [(1e3 * row.cpu, getattr(row, field)) for row in members]
@@ -153,6 +160,8 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
 def error_against_step(
     rows: Iterable[Measurement], featured: Featured = lambda row: True, field: str = "angle"
 ) -> Figure:
+    from matplotlib.lines import Line2D
+
     def pairs(members: Iterable[Measurement]) -> Pairs:
         return [(1e3 * row.step, getattr(row, field)) for row in members]
 
@@ -172,6 +181,8 @@ def error_against_step(
 
 def _guides(panel: Axes) -> None:
     """Draw reference lines with several slopes at the place that is farthest from the curves of the panel."""
+    from scipy.spatial import KDTree
+
     low, high = np.log10([panel.get_xlim(), panel.get_ylim()]).T
     size = high - low  # decades
     width, gap = min(0.22 * size[0], 0.28 * size[1] / max(SLOPES)), 0.05 * size[0]
@@ -230,6 +241,8 @@ class ComparedRow:
 
 def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
     """A panel for each row and column with the least error within a CPU time; all panels have the same axes."""
+    from matplotlib.lines import Line2D
+
     engines = list(dict.fromkeys(engine for row in rows for lines in row.lines.values() for engine in lines))
     with drawing(COMPARED_HEIGHT) as figure:
         columns = list(dict.fromkeys(column for row in rows for column in row.lines))

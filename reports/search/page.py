@@ -8,9 +8,9 @@ import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from engines.registry import ENGINES, OTHERS
 from reports.model.tasks import Answer
@@ -33,6 +33,9 @@ from reports.search.shrinking import Shrink, choose_worst, line_of
 from reports.search.subjects import LAW_CHECKS, ORACLES, Adapted, Alone, Oracle, Subject, column_of, is_shaped
 from reports.write.tables import number
 from reports.write.templates import environment
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RARE_SHARE = 0.01  # Skip reasons with a smaller share of all cases are counted together.
 AXIS_LEAST, AXIS_MOST = 1e-17, 1e2  # Limits of the axis, to which errors are clipped.

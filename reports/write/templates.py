@@ -6,13 +6,14 @@ import re
 from collections.abc import Callable, Mapping
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
-
-from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined, Template
+from typing import TYPE_CHECKING, Any
 
 from reports.model.outcomes import SATURATED, TORN
 from reports.model.page import Page
 from reports.write import unmeasured
+
+if TYPE_CHECKING:
+    from jinja2 import Environment, Template
 
 HEADING = re.compile(r"^#{1,6} (.+)$", re.MULTILINE)
 PAGE_LINK = re.compile(r"(?<!!)\[([^\]\n]*(?:\n[^\]\n]*)?)\]\((\w+\.md)(?:#[^)]*)?\)")
@@ -78,6 +79,8 @@ def inert_page(text: str) -> str:
 def environment(folder: Path = TEMPLATES) -> Environment:
     """The environment of templates. An undefined name raises an exception; an unknown number becomes UNKNOWN_MARK.
     Templates in another folder have the prefix "own/", so that they can't replace our templates."""
+    from jinja2 import ChoiceLoader, Environment, FileSystemLoader, PrefixLoader, StrictUndefined
+
     out = Environment(
         loader=ChoiceLoader([FileSystemLoader(TEMPLATES), PrefixLoader({"own": FileSystemLoader(folder)})]),
         undefined=StrictUndefined,

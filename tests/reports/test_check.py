@@ -23,8 +23,9 @@ from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.scenes import FreeFourBar
+from reference.trajectory import Trajectory
 from reports.check import first_use, rendering
-from reports.check.checked import check, read_user_model
+from reports.check.checked import check, read_user_model, resample
 from reports.check.document import check_data, schema
 from reports.check.facts import compute_facts
 from reports.check.judging import accelerations, reference_motion
@@ -155,6 +156,24 @@ def test_the_damping_of_a_soft_drive_is_relative_to_its_prescribed_rate():
 
 
 # the equation is x'' = -d/2 x' - 100 x
+def test_a_motion_that_is_cubic_in_time_is_resampled_exactly():
+    """The obstacles of a model are looked for between the samples of the ideal motion, also after the last sample but
+    one."""
+    factors = np.random.default_rng(1).uniform(-1, 1, (4, 2, 3))
+
+    def cubic(t: np.ndarray) -> np.ndarray:
+        return np.einsum("tp,pbc->tbc", t[:, None] ** np.arange(4), factors)
+
+    def rate(t: np.ndarray) -> np.ndarray:
+        return np.einsum("tp,pbc->tbc", t[:, None] ** np.arange(3), factors[1:] * np.array([1, 2, 3])[:, None, None])
+
+    t = np.linspace(0.0, 1.2, 4)
+    finer, pose, twist = resample(Trajectory(t, cubic(t), rate(t), np.zeros((4, 0))), 5)
+    assert finer == pytest.approx(np.linspace(0.0, 1.2, 16))
+    assert pose == pytest.approx(cubic(finer), abs=1e-14)
+    assert twist == pytest.approx(rate(finer), abs=1e-13)
+
+
 @pytest.mark.parametrize(("damping", "rate"), [(0.0, 10.0), (80.0, 20.0 + 300.0**0.5)])
 def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
     text = (

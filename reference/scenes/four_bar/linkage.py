@@ -16,7 +16,6 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import BDF, DOP853, LSODA, RK23, RK45, Radau
 
 from reference.checks import Count, InvalidMechanism, Numbers, Positive, Sign, Signs, Valid, short_repr, validated
 from reference.joints import Vector
@@ -98,7 +97,7 @@ def _cross(first: Any, second: Any) -> Any:
 # default tolerance of common packages (rtol 1e-3) the coupler's angle has an error of 0.02 rad after 1 and of 1 rad
 # after 100 revolutions.
 
-ADAPTIVE: dict[str, Any] = {"RK45": RK45, "RK23": RK23, "DOP853": DOP853, "Radau": Radau, "BDF": BDF, "LSODA": LSODA}
+ADAPTIVE = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")  # Classes of scipy.integrate.
 # The stages' nodes, as fractions of the step, for methods with a fixed step.
 FIXED_STEP_NODES = {"euler": (0.0,), "rk4": (0.0, 0.5, 0.5, 1.0)}
 Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA"]
@@ -154,7 +153,9 @@ def integrate_rates(
     out = np.full((times.size, 3), np.nan)
     out[0] = start
     if method in ADAPTIVE:
-        solver = ADAPTIVE[method](odes, times[0], out[0].copy(), times[-1], rtol=rtol, atol=atol)
+        from scipy import integrate
+
+        solver = getattr(integrate, method)(odes, times[0], out[0].copy(), times[-1], rtol=rtol, atol=atol)
         evaluations, stopped = _adaptive(solver, times, out, limit)
     else:
         evaluations, stopped = _fixed(odes, FIXED_STEP_NODES[method], times, out, every, limit)

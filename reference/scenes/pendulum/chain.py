@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import cho_solve_banded, cholesky_banded, eigh, solveh_banded
 
 from reference.checks import (
     Count,
@@ -105,6 +104,8 @@ class Chain(Valid):
         residuals in extended precision. The error is then r / 2000 roundings, or r roundings if numpy.longdouble is a
         double.
         """
+        from scipy.linalg import cho_solve_banded, cholesky_banded, solveh_banded
+
         leading = angle.shape[:-1]
         links, uneven = len(self._mass), self._mass.max() > UNEVEN * self._mass.min()
         doubles, rate = angle.astype(float, copy=False), rate if uneven else rate.astype(float, copy=False)
@@ -242,6 +243,8 @@ class Chain(Valid):
         """Frequencies (links,) [rad/s], ascending, and shapes (links, modes) of angles of small oscillations about
         hanging.
         """
+        from scipy.linalg import eigh
+
         squares, shapes = eigh(np.diag(self.stiffness), self.inertia_matrix)
         return np.sqrt(squares), shapes
 

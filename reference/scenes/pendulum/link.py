@@ -17,7 +17,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import elliprf
 
 from reference.checks import LARGEST_ARRAY, NonNegative, Positive, Valid, require_room, validated
 from reference.joints import Pin
@@ -40,6 +39,8 @@ HALF_PRECISION = 1e-9
 
 def quarter_period(complement: float) -> float:
     """K [1], the complete integral of the first kind, for 0 <= n <= 1; infinite for n = 0."""
+    from scipy.special import elliprf
+
     # `incomplete` uses the same function, so that the start rate of a body released from rest is exactly zero.
     return float(elliprf(0.0, complement, 1.0))
 
@@ -50,6 +51,8 @@ def incomplete(sine: ArrayLike, cosine: ArrayLike, complement: float) -> Array:
     The arguments are the amplitude's sine and cosine, times any common factor, since an amplitude near pi/2 has too few
     digits if n is near 0. At n = 0 the cosine must be positive.
     """
+    from scipy.special import elliprf
+
     sine, cosine = np.asarray(sine, dtype=float), np.asarray(cosine, dtype=float)
     size = np.hypot(sine, cosine)
     sine, cosine = sine / size, cosine / size

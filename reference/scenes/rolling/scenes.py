@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
-from scipy.integrate import quad
 
 from reference.checks import Positive
 from reference.mechanism import Body, Mechanism
@@ -306,6 +305,7 @@ class SquareOnCatenaries(RollingScene):
         The centre moves on a level line, so the kinetic energy M(theta) theta'^2 / 2 is constant. Here M = inertia +
         mass r^2, and r = side / (2 cos theta) for this arch.
         """
+        from scipy.integrate import quad
 
         def mass(theta: float) -> float:
             return self.inertia + self.mass * (self.side / 2 / math.cos(theta)) ** 2

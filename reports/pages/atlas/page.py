@@ -9,15 +9,9 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch, Rectangle
-from matplotlib.path import Path as Outline
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
@@ -26,6 +20,10 @@ from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.columns import displayed_variant
 from reports.write.tables import DASH, markdown, number, step_words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 RESULTS = Path(__file__).parents[2] / "results"
 ERROR_BOUNDS = (math.inf, 1e-2, 1e-4)  # rad.
@@ -161,6 +159,8 @@ def atlas_map(stability_map: StabilityMap, columns: Sequence[StoredColumn]) -> F
 
 
 def _prepare(panel: Axes, method: str, columns: Sequence[StoredColumn], whole: bool) -> None:
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+
     style_axes(panel, grid=False)
     panel.set_title(fill(method, 30), loc="left", fontweight="bold", color=LIGHT.ink)
     panel.set_yscale("log")
@@ -178,6 +178,9 @@ def _prepare(panel: Axes, method: str, columns: Sequence[StoredColumn], whole: b
 def _legend_entries(
     stability_map: StabilityMap, regions: set[Outcome | str], predictions: set[str]
 ) -> tuple[list[Any], list[str]]:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Rectangle
+
     handles: list[Any] = []
     labels = []
     for role in (role for role in SHADE_NAMES if role in regions):
@@ -219,6 +222,9 @@ def regions_of_steps(column: StoredColumn) -> list[Outcome | str]:
 
 def _draw_regions(panel: Axes, columns: Sequence[StoredColumn], whole: bool) -> set[Outcome | str]:
     """Draw each region as one path, and return the regions. Successive cells of a column form one rectangle."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
     across = edges([column.value for column in columns], whole)
     shapes: dict[Outcome | str, list[tuple[float, float, float, float]]] = {}
     for column, (left, right) in zip(columns, pairwise(across), strict=True):

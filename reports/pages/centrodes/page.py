@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from engines import method_name
 from engines.registry import VARIANTS
@@ -28,6 +25,10 @@ from reports.model.tasks import Motion
 from reports.plots.mechanisms import draw_ground, draw_pose
 from reports.plots.theme import LIGHT, bare, drawing, note, style_axes, svg
 from reports.write.tables import markdown, number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 MAX_POSES_CHECKED = 101
 
@@ -48,6 +49,8 @@ def returned(curves: Centrodes) -> tuple[float, float]:
 
 def draw_centrodes(mechanism: Mechanism, poses: Array, curves: Centrodes, indices: Sequence[int], body: int) -> Figure:
     """A panel for each sample in `indices`. `poses` (samples, bodies, 3) and `curves` have the same samples."""
+    from matplotlib.lines import Line2D
+
     with drawing(4.4) as figure:
         for panel, index in zip(figure.subplots(1, len(indices), sharex=True, sharey=True), indices, strict=True):
             bare(panel, "")

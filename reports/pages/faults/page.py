@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from engines import Engine, Unsupported
 from engines.mjx import DEFAULT
@@ -27,6 +26,9 @@ from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.pages.common import run_script
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 UPSTREAM = Path(__file__).parent / "upstream"  # texts for the engines' issue trackers
 SCRIPT_BLOCK = re.compile(r"(?:## `|<summary>)(\w+)\.py(?:`|</summary>)\n\n```python\n(.*?)```", re.DOTALL)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from reference.plane import rotated
 from reference.rolling.closed_curves import Ellipse
@@ -19,6 +18,10 @@ from reference.rolling.roll import Roll
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingScene
 from reports.plots.theme import LIGHT, bare, drawing, note, style_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 POINTS_PER_CURVE = 241
 

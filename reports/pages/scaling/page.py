@@ -7,12 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import ceil, log, pi, sqrt
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from engines import Engine, method_name, mujoco, pymunk
 from engines.lagrange import Lagrange
@@ -29,6 +26,9 @@ from reports.plots.looks import look
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.tables import DASH, markdown, number
 from reports.write.unmeasured import UNMEASURED
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -106,6 +106,9 @@ FURTHER_MARKS = ("X", "v")
 
 def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
     """A panel with the CPU time of a step [µs], and a panel with the largest angle error [rad] of full runs."""
+    from matplotlib.lines import Line2D
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+
     variants: dict[str, list[str]] = {}
     for series in all_series:
         variants.setdefault(series.engine, []).append(series.variant)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from engines import ConvergenceOrder, Engine
 from engines.registry import VARIANTS
@@ -32,6 +31,9 @@ from reports.write import row_tables, tables
 from reports.write.columns import enforcement_by_method
 from reports.write.page_tables import COMPARED_STEP
 from reports.write.rows import Rows
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 BLADE_LENGTH = 0.35  # m
 PARKED: Triple = (0.0, 1.0, 0.0)

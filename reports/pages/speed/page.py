@@ -8,12 +8,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
-
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from typing import TYPE_CHECKING, Any
 
 from reports.model.page import Material, Page
 from reports.pages.speed.table import (
@@ -31,6 +26,10 @@ from reports.pages.speed.table import (
 from reports.plots.looks import colour, mark
 from reports.plots.theme import LIGHT, drawing, style_axes, svg
 from reports.write.tables import markdown, number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 REASONS = tomllib.loads(Path(__file__).with_name("reasons.toml").read_text(encoding="utf-8"))["reasons"]
 NO_REASON = "not explained yet"
@@ -148,6 +147,8 @@ def _look(engine: str, engines: Sequence[str]) -> dict[str, Any]:
 
 def ratio_chart(table: SpeedTable) -> Figure:
     """A panel for each error: the ratio of CPU times over the judge, a line for each scene."""
+    from matplotlib.lines import Line2D
+
     with drawing(1.4 + 0.42 * len(table.scenes)) as figure:
         panels = figure.subplots(1, len(table.targets), sharex=True, sharey=True, squeeze=False)[0]
         for panel, target in zip(panels, table.targets, strict=True):
@@ -164,6 +165,8 @@ def ratio_chart(table: SpeedTable) -> Figure:
 
 
 def _draw(panel: Axes, table: SpeedTable, target: float) -> None:
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     style_axes(panel)
     panel.set_title(f"error at most {target:.0e} rad", loc="left", fontweight="bold")
     panel.set_xscale("log")

@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
@@ -27,6 +24,10 @@ from reports.versions.table import (
     released,
 )
 from reports.write.tables import markdown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 def variants(entries: Sequence[Entry]) -> tuple[str, ...]:
@@ -75,6 +76,8 @@ def _look(entry: Entry) -> tuple[str, str]:
 
 
 def _draw_cell(panel: Axes, column: int, row: int, entry: Entry) -> None:
+    from matplotlib.patches import Rectangle
+
     colour, letters = _look(entry)
     # With `add_patch`, matplotlib would update the limits for each of a thousand cells.
     panel.add_artist(Rectangle((column, row), 1, 1, facecolor=colour, edgecolor=LIGHT.paper, linewidth=1))
@@ -82,6 +85,8 @@ def _draw_cell(panel: Axes, column: int, row: int, entry: Entry) -> None:
 
 
 def _legend(figure: Figure, entries: Sequence[Entry]) -> None:
+    from matplotlib.patches import Rectangle
+
     colours = {name: getattr(LIGHT, role) for role, name in SHADE_NAMES.items()}
     for outcome in Outcome:
         if any(not entry.comparable and entry.outcome == outcome for entry in entries):

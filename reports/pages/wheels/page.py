@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from engines import pymunk
 from engines.registry import VARIANTS
@@ -26,6 +25,9 @@ from reports.plots.theme import svg
 from reports.write.columns import displayed_variant
 from reports.write.experiments import observe_each
 from reports.write.unmeasured import UNMEASURED
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
