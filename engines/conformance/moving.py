@@ -9,7 +9,6 @@ import time
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from engines import ConvergenceOrder, NotDeclared, Unsupported
 from engines.conformance.check import (
@@ -314,6 +313,8 @@ def feels_forces_or_refuses_them(subject: CheckedEngine) -> None:
 
 
 def _change_of_rate(mechanism: Mechanism, until: float) -> float:
+    from scipy.integrate import solve_ivp
+
     pose, twist = np.zeros((1, 3)), np.zeros((1, 3))
 
     def derivative(_: float, state: Array) -> list[float]:

@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.special import ellipj, ellipkinc
 
 from engines.conformance.check import Array, World, WorldMotion
 from reference.joints import Drive, Joint, Pin, Skate, Slot
@@ -68,6 +67,8 @@ def resting(name: str, joints: tuple[Joint, ...], reaction: list[float], place: 
 
 def swing(t: Array, angle: float, rate: float, frequency: float) -> tuple[Array, Array, Array]:
     """Angle, rate and acceleration of a swing with angle'' = -frequency^2 sin(angle), by Jacobi's functions."""
+    from scipy.special import ellipj, ellipkinc
+
     modulus = math.hypot(rate / (2 * frequency), math.sin(angle / 2))
     phase = math.asin(math.sin(angle / 2) / modulus)
     start = ellipkinc(phase if rate >= 0 else math.pi - phase, modulus**2)

@@ -28,7 +28,7 @@ from reports.run.files import temporary_folder, write_whole
 MAX_WIDTH = 120  # Largest number of columns of the output.
 OVERWRITE = "\r\x1b[K"  # Erases the current line of a terminal.
 # The fork server imports these modules while this process reads the options and the model.
-EARLY = ("reports.check.document", "reports.check.telling", "numba")
+EARLY = ("reports.check.document", "reports.check.telling", "scipy.integrate", "llvmlite.binding")
 # Names that `switch_off` of the readers for MuJoCo and pymunk accepts. --help does not import the readers.
 SWITCHED_OFF = (
     "contact, limit or sleep, in pymunk damping too, in MuJoCo frictionloss, forcelimit, armature, fluid, actuation, "
