@@ -77,12 +77,9 @@ def _singular_instants(mechanism: Mechanism, motion: Trajectory, independent: in
     norm = np.linalg.norm(scaled, axis=-1, keepdims=True)
     sizes = np.linalg.svd(scaled / np.where(norm > 0, norm, 1.0), compute_uv=False)
     least = sizes[:, independent - 1] / sizes[:, 0]
-    instants = []
-    for index in range(len(times)):
-        around = least[max(0, index - 1) : index + 2]
-        if least[index] < NEARLY_SINGULAR and least[index] == around.min():
-            instants.append((float(times[index]), float(least[index])))
-    return tuple(instants)
+    around = np.pad(least, 1, constant_values=np.inf)
+    lowest = (least < NEARLY_SINGULAR) & (least <= around[:-2]) & (least <= around[2:])
+    return tuple(zip(times[lowest].tolist(), least[lowest].tolist(), strict=True))
 
 
 def _dead_centres(mechanism: Mechanism, motion: Trajectory, freedoms: int) -> tuple[tuple[float, str], ...]:

@@ -108,15 +108,9 @@ def _fit(pairs: tuple[tuple[float, float], ...], rounding: float) -> Fit:
 
 def _longest_run(mask: np.ndarray) -> tuple[int, int]:
     """(start, stop) of the longest run of true values. Among runs of equal length the last run counts."""
-    best, start = (0, 0), None
-    for index, value in enumerate([*mask, False]):
-        if value and start is None:
-            start = index
-        elif not value and start is not None:
-            if index - start >= best[1] - best[0]:
-                best = (start, index)
-            start = None
-    return best
+    runs = np.flatnonzero(np.diff([False, *mask, False])).reshape(-1, 2).tolist()
+    start, stop = max(reversed(runs), key=lambda run: run[1] - run[0], default=(0, 0))
+    return start, stop
 
 
 def _plateau(steps: np.ndarray, errors: np.ndarray, slopes: np.ndarray) -> tuple[float, float]:
