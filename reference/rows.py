@@ -24,11 +24,23 @@ Array = NDArray[np.float64]
 # Singular values below this fraction of the largest singular value count as zero. The value is far above rounding and
 # far below the singular values of regular mechanisms.
 RANK_TOLERANCE = 1e-9
+# The sum of the squared singular values of rows of length 1 is the number of rows. A squared singular value above this
+# share of the sum is far above the rounding of the product, 1e-15, and above RANK_TOLERANCE squared.
+REGULAR = 1e-9
 
 
 def rank(rows: Array, length: float) -> int:
-    """The number of independent rows (rows, 3 bodies), with angles counted as arcs of `length` [m]."""
-    return int(ranks(rows, np.asarray(length)))
+    """The number of independent rows (rows, 3 bodies), with angles counted as arcs of `length` [m].
+
+    If the squares of the singular values exceed REGULAR times the number of rows, a Cholesky factorisation exists. It
+    takes a thirtieth of the time of a singular value decomposition for a long chain.
+    """
+    scaled = _unitless(rows, length)
+    try:
+        np.linalg.cholesky(scaled @ scaled.T - REGULAR * len(rows) * np.eye(len(rows)))
+    except np.linalg.LinAlgError:
+        return int(ranks(rows, np.asarray(length)))
+    return len(rows)
 
 
 def ranks(rows: Array, length: Array) -> NDArray[np.int_]:

@@ -243,6 +243,8 @@ def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth
     assert rank(rows, 1.0) == 3
     assert rank(np.zeros((0, 3)), 1.0) == 0
     assert rank(np.zeros((2, 3)), 1.0) == 0
+    for angle, expected in ((1e-6, 2), (1e-8, 2), (1e-10, 1)):  # the singular value decomposition decides
+        assert rank(np.array([[1.0, 0.0, 0.0], [1.0, angle, 0.0]]), 1.0) == expected
 
 
 def test_a_symmetric_system_is_solved_in_any_unit_and_a_singular_one_by_minimum_norm():
