@@ -67,14 +67,14 @@ def compare(
 def print_comparison(console: Terminal, builds: BuildComparison) -> None:
     """Print a table with a row for each method of each scene, tables of differences and orders, and a summary."""
     comparison, (first, second) = builds.comparison, (side.label for side in builds.sides)
-    lines = sorted(comparison.lines(), key=lambda line: (line.scene, line.method))
+    lines = comparison.by("scene", "method")
     other = tuple(difference for difference in comparison.differences if not difference.worse)
     step = ("step [s]", first, second)
     tables = [
         (
             f"From {first} to {second}",
             ("scene", "method", "what changed most", *step, "CPU time, times", "verdict"),
-            [[line.scene, line.method, *_cells(line.chief), line.cost, line.verdict] for line in lines],
+            [[*names, *_cells(line.chief), line.cost, line.verdict] for names, line in lines.items()],
         ),
         *(
             (
@@ -106,7 +106,7 @@ def print_comparison(console: Terminal, builds: BuildComparison) -> None:
         if ratio > DEAR:
             console.tell(f"{second}: {method} takes {ratio:.3g} times the CPU time")
     cost = f"CPU time is {comparison.cost:.2f} times as much, by the median"
-    unchanged = sum(line.verdict == "nothing changed" for line in lines)
+    unchanged = sum(line.verdict == "nothing changed" for line in lines.values())
     console.tell(
         f"From {first} to {second}, {len(comparison.pairs)} cells of both: {len(comparison.worse)} numbers are worse, "
         f"{len(other)} better or other; nothing changed in {unchanged} of {len(lines)} methods of scenes; "

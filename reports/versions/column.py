@@ -76,9 +76,7 @@ def column(
     are needed for the rows of a version that can't be used. `watch` is called a few times a second with the labels of
     running cells. If `watch` raises, the process is ended, and the stored rows remain. `done` is called with each row.
     Raises BadInput if the code and the metadata have different version numbers."""
-    rows: list[Measurement] = []
-    trees: list[tuple[Trees, Answer]] = []
-    loss = None
+    rows, trees, loss = list[Measurement](), list[tuple[Trees, Answer]](), None
     for message in _messages(request):
         match message:
             case Measurement():
@@ -94,15 +92,14 @@ def column(
                 loss = message
             case _:
                 raise TypeError(f"message of a version's process: it is a {type(message).__name__}")
-    if loss is None:
-        return VersionColumn(version, tuple(rows), tuple(trees))
-    finished = {(row.scene, row.variant, row.every) for row in rows}
-    rows += [
-        blank(cell, loss.outcome, loss.sentence)
-        for cell in cells_of(request, engines)
-        if (cell.scene.name, cell.engine.variant, cell.every) not in finished
-    ]
-    return VersionColumn(version, tuple(rows), tuple(trees), loss.sentence)
+    if loss is not None:
+        finished = {(row.scene, row.variant, row.every) for row in rows}
+        rows += [
+            blank(cell, loss.outcome, loss.sentence)
+            for cell in cells_of(request, engines)
+            if (cell.scene.name, cell.engine.variant, cell.every) not in finished
+        ]
+    return VersionColumn(version, tuple(rows), tuple(trees), loss.sentence if loss else "")
 
 
 def cells_of(request: VersionRequest, engines: Sequence[Engine]) -> list[Cell]:
@@ -116,10 +113,6 @@ def with_known_names(function: Callable[[Any], Any], item: Any) -> Any:
         return function(item)
     except (AttributeError, ImportError) as error:
         return Loss(Outcome.UNSUPPORTED, f"this version lacks what our adapter calls: {error}")
-
-
-def _supervised(function: Callable[[Any], Any], *terms: Any) -> Iterator[Any]:
-    return supervise(partial(with_known_names, function), *terms)
 
 
 def _messages(request: VersionRequest) -> Iterator[Any]:
@@ -214,7 +207,7 @@ def _run(request: VersionRequest, engines: Sequence[Engine], send: Callable[[Any
             for row in store.get(cell for cell in cells if cell not in waiting).values():
                 send(row)
         options: dict[str, Any] = {"watch": lambda items: send([item.label for item in items])}
-        options["supervised"] = _supervised
+        options["supervised"] = lambda function, *terms: supervise(partial(with_known_names, function), *terms)
         options["done"] = lambda result: send(result) if isinstance(result, Measurement) else None
         run_into(store, [*cells, *tasks], request.fresh, request.limit, **options)
         for task, answer in store.answers(tasks).items():

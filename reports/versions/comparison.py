@@ -86,24 +86,16 @@ class RowComparison:
 
     @property
     def costs(self) -> dict[str, float]:
-        return {part.method: part.cost for part in self._by("method") if not math.isnan(part.cost)}
+        """Method -> `cost`, without methods that were not timed."""
+        parts = self.by("method").items()
+        return {method: part.cost for (method,), part in parts if not math.isnan(part.cost)}
 
-    def lines(self) -> list[RowComparison]:
-        return self._by("scene", "method")
-
-    def _by(self, *names: str) -> list[RowComparison]:
+    def by(self, *names: str) -> dict[tuple[str, ...], RowComparison]:
+        """Values of these properties of a row -> the comparison of the pairs with these values."""
         groups: dict[tuple[str, ...], list[tuple[Measurement, Measurement]]] = {}
-        for earlier, later in self.pairs:
-            groups.setdefault(tuple(getattr(later, name) for name in names), []).append((earlier, later))
-        return [RowComparison(tuple(pairs)) for pairs in groups.values()]
-
-    @property
-    def scene(self) -> str:
-        return self.pairs[0][1].scene
-
-    @property
-    def method(self) -> str:
-        return self.pairs[0][1].method
+        for pair in self.pairs:
+            groups.setdefault(tuple(getattr(pair[1], name) for name in names), []).append(pair)
+        return {values: RowComparison(tuple(pairs)) for values, pairs in sorted(groups.items())}
 
     @property
     def chief(self) -> Difference:

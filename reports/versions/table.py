@@ -20,6 +20,7 @@ from reports.run.installed import numbers
 from reports.versions.column import VersionColumn
 from reports.versions.trees import Trees
 from reports.write.csv_files import read_records, records_csv
+from reports.write.unmeasured import UNMEASURED
 
 DATA = Path(__file__).parents[1] / "results" / "versions.csv"
 ACCELERATION = "acceleration"
@@ -155,6 +156,14 @@ def released(path: Path = DATA) -> ReleaseTable:
 
     listed = tuple(entry for entry in table.entries if is_listed(entry.engine, entry.version))
     return ReleaseTable(listed, {key: mark for key, mark in table.marks.items() if is_listed(*key)})
+
+
+def error_before_term() -> float:
+    """The error of MuJoCo's documented settings in 3.6.0, the last release that omits the velocity term of loops, or
+    UNMEASURED."""
+    wanted = ("3.6.0", "free_four_bar", "tuned")
+    entries = released().of("mujoco")
+    return next((e.error for e in entries if (e.version, e.scene, e.variant) == wanted), UNMEASURED)
 
 
 def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:

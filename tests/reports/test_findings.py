@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import json
 import re
 from dataclasses import asdict, replace
@@ -23,12 +21,7 @@ from reports.model.page import Material
 from reports.model.tasks import Answer, Task, answered
 from reports.pages import findings as module
 from reports.pages.faults.page import OFFSETS, SCRIPTS
-from reports.pages.findings import (
-    FINDING_PLANS,
-    Sources,
-    finding,
-    findings,
-)
+from reports.pages.findings import FINDING_PLANS, Sources, finding, findings
 from reports.pages.guides.page import PAGES as GUIDES
 from reports.pages.index import symptoms
 from reports.pages.published.experiments import (
@@ -57,6 +50,7 @@ from reports.write.templates import anchor, headings, link
 from reports.write.unmeasured import UNKNOWN_MARK
 from tests.committed_rows import RESULTS, answer_to, page_rows
 from tests.reports.models_of_others import models, spaces, unpacked
+from tests.reports.test_pages import run_program
 
 TAUGHT = tuple(page for page in PAGES if page.name in ("four_bar", "pendulum", "person", "skate", "rolling"))
 FAULTS, VERSIONS = (next(page for page in PAGES if page.name == name) for name in ("faults", "versions"))
@@ -158,11 +152,9 @@ def test_every_symptom_has_a_link_to_an_existing_section():
 def test_the_programs_of_the_settings_print_the_weight_of_the_hanging_body():
     (text,) = render_page(GUIDES[2], Material({}), "the command").values()
     for source in re.findall(r"^```\w+\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)[:2]:
-        printed = io.StringIO()
-        with contextlib.redirect_stdout(printed):
-            exec(compile(source, "a page", "exec"), {"__name__": "__main__"})
-        assert printed.getvalue().count("19.62") == 2  # the weight of 2 kg by Newton's law and by the engine
-        assert "-19.62" not in printed.getvalue()
+        _, printed = run_program(source)
+        assert printed.count("19.62") == 2  # the weight of 2 kg by Newton's law and by the engine
+        assert "-19.62" not in printed
 
 
 @pytest.fixture(scope="module")
@@ -172,22 +164,14 @@ def answers():
     return {task: answered(task) for task in tasks}
 
 
-def test_the_start_of_acrobot_reproduces_the_first_published_drift():
-    assert rk4_drift(ACROBOT_START, ACROBOT_STEPS[0]) == pytest.approx(PUBLISHED[0], rel=1e-7)
+def test_rk4_has_the_published_drifts_of_acrobot_and_mujocos_rk4_has_the_same(answers):
     assert rk4_drift(ACROBOT_START + 1e-3, ACROBOT_STEPS[0]) != pytest.approx(PUBLISHED[0], rel=1e-3)
-
-
-def test_rk4_predicts_the_second_published_number_and_its_states_in_32_bits_the_third(answers):
-    hand = answers[DirectRK4()]
-    assert hand.array("drift")[1] == pytest.approx(PUBLISHED[1], rel=0.1)
-    assert hand.array("drift")[2] < PUBLISHED[2] / 10
+    ours, rounded = (answers[DirectRK4()].array(name) for name in ("drift", "rounded"))
+    assert tuple(ours[:2]) == (pytest.approx(PUBLISHED[0], rel=1e-7), pytest.approx(PUBLISHED[1], rel=0.1))
     # States in 32 bits have the rounding error 2^-24 = 6e-8; relative to the initial energy, it is smaller.
-    assert PUBLISHED[2] / 3 < hand.array("rounded")[2] < 3 * PUBLISHED[2]
-
-
-def test_mujocos_rk4_has_the_drift_of_gymnasiums_method(answers):
-    """The drifts agree closely only at 0.2 s, since only this run has a sample at every step."""
-    ours, theirs = answers[DirectRK4()].array("drift"), answers[Acrobot(TUNED)].array("drift")
+    assert ours[2] < PUBLISHED[2] / 10 < PUBLISHED[2] / 3 < rounded[2] < 3 * PUBLISHED[2]
+    theirs = answers[Acrobot(TUNED)].array("drift")
+    # The drifts agree closely only at 0.2 s, since only this run has a sample at every step.
     assert theirs[0] == pytest.approx(ours[0], rel=1e-9)
     np.testing.assert_allclose(theirs, ours, rtol=1e-2)
 

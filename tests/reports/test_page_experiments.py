@@ -112,8 +112,7 @@ SKATE = (Path(skate.__file__).parent / "page.md").read_text(encoding="utf-8")
     ("program", "bound"), list(zip(re.findall(r"```python\n(.*?)```", SKATE, re.DOTALL), (1e-6, 1e-10), strict=True))
 )
 def test_programs_of_the_skate_have_the_accuracy_that_the_page_states(program, bound):
-    names: dict = {}
-    exec(compile(program, "skate.md", "exec"), names)
+    names = common.run_script("skate.md", program)
     pose = names["data"].qpos + np.array([0.5, 0.0, 0.0])  # coordinates are relative to the initial position
     error = np.abs(pose - ChaplyginSleigh().motion([3.0]).pose[0, 0]).max()
     assert error < 3 * bound

@@ -288,6 +288,14 @@ def anchors(file: str) -> frozenset[str]:
     return frozenset(anchor(title) for title in headings(text))
 
 
+def run_program(source: str) -> tuple[dict, str]:
+    """The global names and the output of a program."""
+    names, printed = {"__name__": "__main__"}, io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(source, "a page", "exec"), names)
+    return names, printed.getvalue()
+
+
 @pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
 def test_links_of_a_page_have_targets_and_its_programs_run_as_printed(page, undrawn):
     for name, text in texts(page).items():
@@ -297,10 +305,7 @@ def test_links_of_a_page_have_targets_and_its_programs_run_as_printed(page, undr
             assert heading in anchors(target or name), (name, target, heading)
         for language, source in re.findall(r"^```(\w*)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE):
             assert language == "python", f"{language}: only programs that run as they are belong on a page"
-            printed = io.StringIO()
-            with contextlib.redirect_stdout(printed):
-                exec(compile(source, "a page", "exec"), {"__name__": "__main__"})
-            assert printed.getvalue().strip()
+            assert run_program(source)[1].strip()
 
 
 def called(name: str) -> Disc:

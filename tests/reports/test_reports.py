@@ -108,10 +108,8 @@ class OtherDisc(Disc):
     name: ClassVar[str] = "other_disc"
 
 
-DISCS = Page("base", "Discs", "One disc.", (Disc(), OtherDisc()), (Toy(),))
 DISC, OTHER = Disc(), OtherDisc()
-
-
+DISCS = Page("base", "Discs", "One disc.", (DISC, OTHER), (Toy(),))
 CELLS = {
     Cell(scene, Toy(variant), every): row_of(
         f"mujoco {variant}", scene=scene.name, every=every, step=0.1 / every, angle=angle / every**2, cpu=angle
@@ -256,16 +254,10 @@ def before(tmp_path: Path) -> dict[str, str]:
 @pytest.mark.parametrize("name", csv_files.ERROR_COLUMNS)
 def test_an_error_keeps_its_published_text_only_within_rounding(name, before):
     published, rounding = getattr(ROW, name), quantity(OF.get(name, name)).rounding
-    assert (
-        getattr(
-            csv_files.with_published_numbers(replace(ROW, **{name: published + 0.9 * rounding}), before, True), name
-        )
-        == published
-    )
-    changed = getattr(
-        csv_files.with_published_numbers(replace(ROW, **{name: published * 1.0123456}), before, True), name
-    )
-    assert changed == float(f"{published * 1.0123456:.4g}") != published
+    near, far = published + 0.9 * rounding, published * 1.0123456
+    texts = [csv_files.with_published_numbers(replace(ROW, **{name: number}), before, True) for number in (near, far)]
+    assert [getattr(row, name) for row in texts] == [published, float(f"{far:.4g}")]
+    assert float(f"{far:.4g}") != published
 
 
 @pytest.mark.parametrize(("name", "noise"), csv_files.TIMING_NOISE.items())

@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
 import re
 from collections.abc import Callable
@@ -28,7 +26,7 @@ from reports.pages.your_loop import page
 from reports.pages.your_loop.experiments import LINKAGES, MILLISECONDS_PER_SAMPLE, run_lines
 from reports.write.page_tables import Program, advice, advised_programs
 from tests.committed_rows import committed_rows, page_rows
-from tests.reports.test_pages import MECHANISMS, texts, undrawn
+from tests.reports.test_pages import MECHANISMS, run_program, texts, undrawn
 
 STEP = 1e-3
 LINES_AT_240_HZ = page.PYMUNK_LINES.replace("(space, 1e-3)", "(space, 1 / 240)")
@@ -212,14 +210,6 @@ FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 named = pytest.mark.parametrize("page", MECHANISMS, ids=lambda page: page.name)
 
 
-def run(source: str) -> tuple[dict, str]:
-    """Run a program, and return its global names and its output."""
-    names, printed = {"__name__": "__main__"}, io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(compile(source, "a page", "exec"), names)
-    return names, printed.getvalue()
-
-
 def advised(page: Page) -> tuple[list[Program], list]:
     """The programs of a page from the committed rows, and the rows of its scene."""
     scene = page.advised_scene
@@ -240,7 +230,7 @@ def test_a_program_has_the_motion_of_its_method_and_at_most_the_error_of_its_row
     for item in built:
         if not item.text:
             continue
-        names, message = run(item.text)
+        names, message = run_program(item.text)
         steps, duration = names["steps"], names["duration"]
         assert duration <= min(scene.duration, scene.horizon)
         trajectory = engines[item.method].build(scene.mechanism(), duration / steps)(1, steps)
@@ -264,7 +254,7 @@ def test_a_pages_block_gives_the_error_of_the_row_of_each_method_without_a_progr
     built, rows = advised(page)
     blocks = [source for _, source in FENCED.findall(texts(page)[page.document])]
     (block,) = [source for source in blocks if "for method, every in {" in source]
-    message = {line.rpartition(": ")[0]: line.rpartition(": ")[2] for line in run(block)[1].splitlines()}
+    message = {line.rpartition(": ")[0]: line.rpartition(": ")[2] for line in run_program(block)[1].splitlines()}
     requested = {item.method: item.every for item in built if not item.text}
     assert message.keys() == requested.keys()
     for method, every in requested.items():

@@ -25,9 +25,8 @@ from reports.model.tasks import Answer, Motion, Task, Values
 from reports.pages.common import CLOSED_IN_1_MS, MAIN_METHODS, cells, described, read_answers, refusals, scene_page
 from reports.plots import mechanisms as drawings
 from reports.plots.theme import svg
-from reports.versions.table import released
+from reports.versions.table import error_before_term
 from reports.write.tables import markdown, number, step_words
-from reports.write.unmeasured import UNMEASURED
 
 SAMPLES_PER_REVOLUTION = 50
 
@@ -141,13 +140,11 @@ def assemblies() -> str:
 def context(material: Material) -> Mapping[str, Any]:
     """Numbers for the text, such as the compliance of MuJoCo's loops and the fraction of a gap that pymunk closes."""
     soft, hard = mujoco.Shipped().impedance, mujoco.TiedToStep().impedance
-    wanted = ("3.6.0", "free_four_bar", "tuned")  # 3.6.0 is the last release that omits the velocity term of loops
-    errors = [entry.error for entry in released().entries if (entry.version, entry.scene, entry.variant) == wanted]
     return {
         "assemblies": assemblies(),
         "soft_share": [1 / d - 1 for d in soft[:2]],  # values without a gap and with a gap of 1 mm or more
         "stiff_share": 1 / hard[0] - 1,
-        "before_term": errors[0] if errors else UNMEASURED,  # rad
+        "before_term": error_before_term(),  # rad
         "closed_in_a_millisecond": CLOSED_IN_1_MS,
     }
 

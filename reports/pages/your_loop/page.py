@@ -16,7 +16,7 @@ from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.quantities import quantity
 from reports.pages.your_loop.experiments import COMMIT, COUNT, LINKAGES, MILLISECONDS_PER_SAMPLE, BeforeAndAfter, Fresh
-from reports.versions.table import released
+from reports.versions.table import error_before_term
 from reports.write.page_tables import program
 from reports.write.row_tables import error_words
 from reports.write.tables import DASH, markdown, milliseconds, number
@@ -133,7 +133,6 @@ def code_before_step(engine: str) -> str:
 def context(material: Material) -> Mapping[str, Any]:
     """The lines and tables. reactions: engine -> relative error of the joint forces in the closed linkage. fresh:
     engine -> `spread` of the errors in random closed linkages, without and with the lines."""
-    earlier = [e.error for e in released().entries if (e.version, e.scene, e.variant) == ("3.6.0", LOOP.name, "tuned")]
     first = {"mujoco": MUJOCO_CASES[0], "pymunk": PYMUNK_CASES[0]}
     rows = {name: material.rows.get(cell(case, case.after)) for name, case in first.items()}
     counts = [answer.number("iterations") for answer in map(material.finished, BUILT) if answer is not None]
@@ -149,7 +148,7 @@ def context(material: Material) -> Mapping[str, Any]:
         "fresh": {name: [spread(material, task) for task in case.fresh] for name, case in first.items()},
         "fresh_count": COUNT,
         "fresh_commit": COMMIT,
-        "before_term": earlier[0] if earlier and rows["mujoco"] is not None else UNMEASURED,
+        "before_term": UNMEASURED if rows["mujoco"] is None else error_before_term(),
     }
 
 
