@@ -12,15 +12,16 @@ from engines import method_name
 from engines.lagrange import loading
 from engines.registry import ENGINES
 from reports.bench import peers
-from reports.bench.many import measure_batch, measure_trees
 from reports.bench.site import measure_site
 from reports.bench.times import (
     COMMAND_TURNS,
     WORLD_COUNTS,
+    measure_batch,
     measure_command,
     measure_grid,
     measure_judge,
     measure_loops,
+    measure_trees,
     measure_truths,
     measure_worlds,
 )
@@ -94,7 +95,7 @@ def _print_rows(title: str, rows: Iterable[tuple[str, float, str]]) -> None:
 def _print_loops(scenes: Sequence[str]) -> None:
     for chosen in choose(scenes).scenes:
         body = [
-            (method_name(loop.engine), number(1e6 * loop.bare), number(1e6 * loop.run), f"{loop.ratio:.3f}")
+            (method_name(loop.engine), number(1e6 * loop.bare), number(1e6 * loop.run), f"{loop.run / loop.bare:.3f}")
             for loop in measure_loops(ENGINES, chosen)
         ]
         if body:
@@ -174,8 +175,9 @@ def _print_commands() -> None:
         ("compare", *COMPARED_RELEASES, "--scenes", "free_four_bar"),
     )
     body = []
-    for cost in map(measure_command, commands):
-        words = " ".join(Path(word).name if "/" in word else word for word in cost.words)
-        body.append((f"crosscheck {words}", number(cost.wall), number(cost.cpu), str(cost.status)))
+    for command in commands:
+        wall, cpu, status = measure_command(command)
+        words = " ".join(Path(word).name if "/" in word else word for word in command)
+        body.append((f"crosscheck {words}", number(wall), number(cpu), str(status)))
     title = f"Seconds to the first useful answer, the quickest of {COMMAND_TURNS}, each in an empty folder"
     _print(title, ("command", "clock [s]", "CPU [s]", "status"), body)

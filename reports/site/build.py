@@ -30,7 +30,7 @@ from reports.site.live.data import data, first_picture
 from reports.site.live.models import own_values
 from reports.site.live.scenes import FREE, take_like
 from reports.site.live.sliders import ENGINES, NAMES, SHIPPED, Live
-from reports.site.markdown import cards, render_html, render_lecture, section, title
+from reports.site.markdown import render_html, render_lecture, section, title
 from reports.site.munk2d import COMPILED, compiled_from
 from reports.site.packages import D3, MUJOCO, PACKAGES, PLOT, NotFetched, Package, fetch_package
 from reports.write.columns import COLUMN_OF_VARIANT
@@ -42,6 +42,7 @@ MARKER = "site.json"
 # A link to a file. Links to pictures are excluded, since Sphinx resolves them.
 FILE_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)")
 DRAGGED = re.compile(r"\{(\w+)\}")  # name of a control in braces, in the text of a lesson
+TEMPLATES = jinja2.Environment(undefined=jinja2.StrictUndefined, trim_blocks=True, keep_trailing_newline=True)
 ENGINE_FILES = {"munk2d": "packages/munk2d.js", "mujoco": "packages/mujoco.js"}
 
 # Columns of results/rows.json.
@@ -154,8 +155,7 @@ def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
         "contributing": lambda part: section(source.contributing, part) or "See CONTRIBUTING.md in the repository.",
         "meanings": {str(outcome): outcome.meaning for outcome in Outcome},
     }
-    environment = jinja2.Environment(undefined=jinja2.StrictUndefined)
-    texts |= {f"howto/{name}.md": environment.from_string(text).render(quoted) for name, text in guides.items()}
+    texts |= {f"howto/{name}.md": TEMPLATES.from_string(text).render(quoted) for name, text in guides.items()}
     links = {"../../README.md": "../index.md", "../../CONTRIBUTING.md": "../howto/index.md"}
     links |= {f"../results/{page.removesuffix('.md')}.html": f"../results/{page}" for page in source.pages}
     files = {name: _with_links(text, links, source.pages).encode() for name, text in texts.items()}
@@ -168,12 +168,13 @@ def _documents(source: SiteSource, lessons: tuple[Lesson, ...]) -> Files:
     files |= {name: text.encode() for name, text in lecture.items()}
     if source.api:
         files |= reference_sources()
-    files["howto/index.md"] = _index("How to", [(f"{name}", title(text)) for name, text in guides.items()]).encode()
+    files["howto/index.md"] = _rendered("guides.md", guides=[(name, title(text)) for name, text in guides.items()])
     results = [(name.removesuffix(".md"), title(text)) for name, text in source.pages.items()]
     trees = {"Results": [f"results/{name}" for name, _ in results if name != "index"], "More": ["howto/index", "about"]}
     trees["More"] += ["lecture"] * bool(lecture) + ["reference/index"] * source.api
-    files["index.md"] = _front_page(source, lessons, results, trees).encode()
-    files["about.md"] = _about(source).encode()
+    missing = _without(source, MUJOCO)
+    files["index.md"] = _rendered("front.md", lessons=_grouped(lessons), results=results, trees=trees, missing=missing)
+    files["about.md"] = _rendered("about.md", missing=source.troubles, packages=PACKAGES, foot=source.foot)
     return files
 
 
@@ -192,33 +193,9 @@ def _with_links(text: str, moved: Mapping[str, str], documents: Iterable[str]) -
     return "".join(part if index % 2 else FILE_LINK.sub(link, part) for index, part in enumerate(parts))
 
 
-def _index(heading: str, pages: list[tuple[str, str]]) -> str:
-    links = "\n".join(f"- [{text}]({name}.md)" for name, text in pages)
-    tree = "\n".join(name for name, _ in pages)
-    return f"# {heading}\n\n{links}\n\n```{{toctree}}\n:hidden:\n\n{tree}\n```\n"
-
-
-def _front_page(
-    source: SiteSource, lessons: tuple[Lesson, ...], results: list[tuple[str, str]], trees: Mapping[str, list[str]]
-) -> str:
-    text = (HERE / "front.md").read_text(encoding="utf-8")
-    taught = "\n\n".join(
-        f"### {problem}\n\n{cards([(f'lessons/{name}.html', heading) for name, heading in group])}"
-        for problem, group in _grouped(lessons).items()
-    )
-    measured = cards([(f"results/{name}.html", heading) for name, heading in results])
-    tree = "\n\n".join(
-        f"```{{toctree}}\n:hidden:\n:caption: {name}\n\n" + "\n".join(pages) + "\n```" for name, pages in trees.items()
-    )
-    values = {"lessons": taught, "results": measured, "missing": _without(source, MUJOCO)}
-    return f"{jinja2.Template(text).render(values)}\n\n{tree}\n"
-
-
-def _about(source: SiteSource) -> str:
-    missing = "\n".join(f"- {sentence}" for sentence in source.troubles) or "Nothing."
-    rows = "\n".join(f"| {p.name} | {p.version} | {p.licence} | {p.use} |" for p in PACKAGES)
-    text = (HERE / "about.md").read_text(encoding="utf-8")
-    return jinja2.Template(text).render(missing=missing, packages=rows, foot=source.foot)
+def _rendered(name: str, **values: Any) -> bytes:
+    """Return a Markdown document of the site from its template in this folder."""
+    return TEMPLATES.from_string((HERE / name).read_text(encoding="utf-8")).render(values).encode()
 
 
 def _lesson_context(lesson: Lesson, quote: Callable[[str], str | None]) -> dict[str, Any]:

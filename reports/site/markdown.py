@@ -12,7 +12,6 @@ import sys
 import warnings
 from contextlib import redirect_stdout
 from functools import cache
-from html import escape
 from pathlib import Path
 
 from reports.model.ending import BadInput
@@ -67,11 +66,6 @@ def section(text: str, heading: str) -> str | None:
         elif match and start is not None and len(match[1]) <= rank:
             return "\n".join(lines[start:index]).strip()
     return None if start is None else "\n".join(lines[start:]).strip()
-
-
-def cards(links: list[tuple[str, str]]) -> str:
-    items = "".join(f'<li><a href="{address}">{escape(text)}</a></li>' for address, text in links)
-    return f'<ul class="cards">{items}</ul>'
 
 
 def render_lecture(notebook: str) -> dict[str, str]:

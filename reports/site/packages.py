@@ -1,4 +1,4 @@
-"""The npm packages of the site.
+"""The npm packages of the site, which packages.toml lists with their digests.
 
 The build fetches the packages, checks their digests and stores them in the folder `cache`. Pages load nothing from
 other servers. Without npm or a network, the site is built without these packages.
@@ -12,6 +12,7 @@ import hashlib
 import shutil
 import subprocess
 import tarfile
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -92,28 +93,8 @@ def printed(command: Sequence[str], trouble: str, patience: float, **given: Any)
     return ended.stdout
 
 
-D3 = Package(
-    "d3",
-    "7.9.2",
-    "ZKb/mONPVKzaO5UlcWcwN8bS4ezvQaYu+bsou+XgNABdGC800kwH651ADTbbTxMPHW13UlvbQafdmJQDk1w7Mg==",
-    "ISC",
-    "scales and axes of the charts",
-    (("dist/d3.min.js", "packages/d3.min.js"), ("LICENSE", "packages/d3.LICENSE.txt")),
+PACKAGES = tuple(
+    Package(**{**table, "files": tuple(table["files"].items())})
+    for table in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["packages"]
 )
-PLOT = Package(
-    "@observablehq/plot",
-    "0.6.17",
-    "/qaXP/7mc4MUS0s4cPPFASDRjtsWp85/TbfsciqDgU1HwYixbSbbytNuInD8AcTYC3xaxACgVX06agdfQy9W+g==",
-    "ISC",
-    "the charts of stored rows",
-    (("dist/plot.umd.min.js", "packages/plot.min.js"), ("LICENSE", "packages/plot.LICENSE.txt")),
-)
-MUJOCO = Package(
-    "@mujoco/mujoco",
-    "3.14.0",
-    "WPUYidu4Fx8+uM4hQv80SOA0ifpWGrsNJguKs8JBV8SCTxjKQ2/rqsh880nUH0/Vwa8vuefghvCQkkoed3bkUg==",
-    "Apache-2.0",
-    "the engine MuJoCo, compiled to WebAssembly by its maintainers",
-    (("mujoco.js", "packages/mujoco.js"), ("mujoco.wasm", "packages/mujoco.wasm")),
-)
-PACKAGES = (D3, PLOT, MUJOCO)
+D3, PLOT, MUJOCO = PACKAGES

@@ -39,22 +39,27 @@ def as_csv(
     """
     results = [f.name for f in fields(Measurement) if f.name not in (*IDENTITY_COLUMNS, *TIMINGS, "key", "limit")]
     names = [*IDENTITY_COLUMNS, *(TIMINGS if timings else results)]
-    out = io.StringIO()
-    out.writelines(f"# {line}\n" for line in header.splitlines())
-    writer = csv.writer(out, lineterminator="\n")
-    last = [] if made_with is None else ["versions"]
-    writer.writerow([*names, *last])
     ordered = sorted(rows, key=lambda row: tuple(getattr(row, name) for name in IDENTITY_COLUMNS))
-    for row in ordered:
-        cells = [cell_text(row, name) for name in names]
-        writer.writerow([*cells, *([] if made_with is None else [digest(made_with[row.key], SHORT)])])
+    lines = [names, *([cell_text(row, name) for name in names] for row in ordered)]
+    if made_with is not None:
+        last = ["versions", *(digest(made_with[row.key], SHORT) for row in ordered)]
+        lines = [[*line, text] for line, text in zip(lines, last, strict=True)]
+    return _csv(lines, header.splitlines())
+
+
+def _csv(lines: Iterable[Iterable[str]], comments: Iterable[str] = ()) -> str:
+    out = io.StringIO()
+    out.writelines(f"# {comment}\n" for comment in comments)
+    csv.writer(out, lineterminator="\n").writerows(lines)
     return out.getvalue()
 
 
 def cell_text(row: Measurement, name: str) -> str:
     value = getattr(row, name)
-    if name in DESCRIPTION_COLUMNS:
-        return digest(value, SHORT)
+    return digest(value, SHORT) if name in DESCRIPTION_COLUMNS else _text(value)
+
+
+def _text(value: Any) -> str:
     return f"{value:.{DIGITS}g}" if isinstance(value, float) else no_formula(str(value))
 
 
@@ -72,16 +77,8 @@ def read_lines(text: str) -> tuple[list[str], list[dict[str, str]]]:
 
 def records_csv(kind: type, records: Iterable[Any], comments: Iterable[str] = ()) -> str:
     """Instances of a dataclass as CSV, with a column for each field. `comments` precede the header."""
-    out = io.StringIO()
-    out.writelines(f"# {line}\n" for line in comments)
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(column.name for column in fields(kind))
-    writer.writerows([_record_text(value) for value in astuple(record)] for record in records)
-    return out.getvalue()
-
-
-def _record_text(value: Any) -> str:
-    return f"{value:.{DIGITS}g}" if isinstance(value, float) else no_formula(str(value))
+    names = [column.name for column in fields(kind)]
+    return _csv([names, *(map(_text, astuple(record)) for record in records)], comments)
 
 
 def read_records(kind: Callable[..., Record], text: str) -> tuple[list[str], tuple[Record, ...]]:
@@ -100,13 +97,10 @@ DESCRIPTION_COLUMNS = ("parameters", "settings")
 
 def descriptions_csv(rows: Iterable[Measurement], made_with: Mapping[str, str] | None = None) -> str:
     """A CSV with the text of each digest in the files of rows."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["digest", "of", "description"])
     described = {(name, getattr(row, name)) for row in rows for name in DESCRIPTION_COLUMNS}
     described |= {("versions", versions) for versions in (made_with or {}).values()}
-    writer.writerows([digest(text, SHORT), name, no_formula(text)] for name, text in sorted(described))
-    return out.getvalue()
+    lines = ([digest(text, SHORT), name, no_formula(text)] for name, text in sorted(described))
+    return _csv([["digest", "of", "description"], *lines])
 
 
 DIGESTS = "digests.csv"

@@ -85,7 +85,8 @@ def new_page(chromium: Any, **options: Any) -> Any:
 
 @pytest.fixture
 def opened(chromium, address):
-    """A function that opens a page in a new context; an error or a warning of the browser fails the test."""
+    """A function that opens a page in a new context; an error or a warning of the browser fails the test. A lesson is
+    returned when its data are loaded."""
     contexts: list[Any] = []
     complaints: list[str] = []
 
@@ -102,6 +103,8 @@ def opened(chromium, address):
         )
         page.on("request", lambda request: complaints.append(request.url) if not local(request.url, address) else None)
         page.goto(address + name)
+        if name.startswith("lessons/") and options.get("java_script_enabled", True):
+            page.wait_for_selector("#lesson.ready")
         return page
 
     yield open_page

@@ -162,7 +162,6 @@ def test_a_mechanism_that_the_reader_releases_moves_as_in_python(running, lesson
 
 def test_a_dragged_linkage_stays_closed(opened):
     page = opened("lessons/four_bar.html", reduced_motion="reduce")  # the animation does not start
-    page.wait_for_selector("#lesson.ready")
     pin = page.locator(".motion.truth .body").nth(1).locator("circle").first.bounding_box()
     page.mouse.move(pin["x"] + pin["width"] / 2, pin["y"] + pin["height"] / 2)
     page.mouse.down()
@@ -175,17 +174,14 @@ def test_a_dragged_linkage_stays_closed(opened):
     assert np.abs(DrivenFourBar().mechanism().gap(np.reshape(pose, (3, 3)), 0.0)[:8]).max() < 1e-9
     # The address stores what was dragged.
     linked = opened(f"lessons/four_bar.html{page.evaluate('location.hash')}")
-    linked.wait_for_selector("#lesson.ready")
     assert linked.evaluate(first) == pose
     # Invalid poses are ignored.
     other = opened("lessons/four_bar.html#set&part=1&scene=0&start=9,9,9,9,9,9,9,9,9")
-    other.wait_for_selector("#lesson.ready")
     assert other.evaluate(first) == pytest.approx(DrivenFourBar().mechanism().pose.ravel())
 
 
 def test_a_mechanism_whose_motion_is_stored_is_dragged_along_this_motion(opened):
     page = opened("lessons/skate.html", reduced_motion="reduce")
-    page.wait_for_selector("#lesson.ready")
     body, slider = page.locator(".motion.truth .body"), page.locator("figure .time input")
 
     def place():

@@ -26,21 +26,18 @@ __all__ = ["address", "chromium", "files", "opened", "running"]
 
 def test_the_address_stores_only_changes_by_the_reader(opened):
     page = opened("lessons/four_bar.html", viewport=TALL)
-    page.wait_for_selector("#lesson.ready")
     page.locator("#part-2 .set").click()
     assert page.evaluate("location.hash") == ""
     page.locator("#part-1 .drag").first.focus()
     page.keyboard.press("ArrowRight")
     assert page.evaluate("location.hash") == "#set&part=1&scene=0&0.coupler=2"
     linked = opened("lessons/four_bar.html#set&scene=0&0.coupler=2&steps=99&0.crank=77&nothing&=", viewport=TALL)
-    linked.wait_for_selector("#lesson.ready")
     values = "Object.fromEntries(crosscheck.form.shown().map(i => [i.name, i.value]))"
     assert linked.evaluate(values) == page.evaluate(values)
     assert "up to" in linked.inner_text(".legend .method-1")
     # The sentence of the marked experiment has the linked number, also without the number of an experiment.
     assert linked.inner_text("#part-1.shown .drag[data-name=coupler]") == "0.65"
     linked = opened("lessons/four_bar.html#set&part=4&scene=1&1.steps=1", viewport=TALL)
-    linked.wait_for_selector("#lesson.ready")
     steps = linked.text_content("#part-4.shown .drag[data-name=steps]")
     assert steps != linked.text_content("#part-5 .drag[data-name=steps]")
     assert steps == linked.evaluate("crosscheck.form.words('steps')")
@@ -51,7 +48,6 @@ def test_a_linked_experiment_stays_in_the_picture_of_a_phone(opened, part):
     """The page itself scrolls to the experiment, and scrolls again when it gets its height."""
     scene = BY_NAME["four_bar"].scenes.index(BY_NAME["four_bar"].scene(BY_NAME["four_bar"].experiments[part - 1].scene))
     page = opened(f"lessons/four_bar.html#set&part={part}&scene={scene}&{scene}.steps=1", viewport=PHONE)
-    page.wait_for_selector("#lesson.ready")
     page.wait_for_timeout(300)  # later scroll events come within 100 ms
     shown = "document.querySelector('.part.shown').id"
     assert page.evaluate(shown) == f"part-{part}"
@@ -62,7 +58,6 @@ def test_a_linked_experiment_stays_in_the_picture_of_a_phone(opened, part):
 
 def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):
     page = opened("lessons/four_bar.html", viewport=TALL, reduced_motion="reduce")
-    page.wait_for_selector("#lesson.ready")
 
     def rows(part, answer):
         page.locator(f"#part-{part} .answers button").nth(answer).click()
@@ -86,7 +81,6 @@ def test_the_answer_to_a_guess_shows_its_own_run_beside_the_right_one(opened):
 
 def test_an_answered_experiment_shows_its_run_again_when_the_reader_returns(opened):
     page = opened("lessons/four_bar.html", reduced_motion="reduce")
-    page.wait_for_selector("#lesson.ready")
     page.locator("#part-3 .answers [data-right]").click()
     page.wait_for_selector("#part-3 .compared:not([hidden])")
     tenth = "document.querySelector('#part-3 .measured').textContent && crosscheck.form.words('steps') === '0.5 ms'"
@@ -144,7 +138,6 @@ def test_a_blocked_download_has_a_readable_message(chromium, address, blocked, p
 
 def test_numbers_and_the_legend_change_while_a_number_is_dragged(opened):
     page = opened("lessons/four_bar.html", viewport=TALL, reduced_motion="reduce")
-    page.wait_for_selector("#lesson.ready")
     page.locator("#part-2 .set").click()
     page.wait_for_function("document.querySelector('.legend .method-1').innerText.includes('up to')")
     texts = page.evaluate(
@@ -161,7 +154,6 @@ def test_numbers_and_the_legend_change_while_a_number_is_dragged(opened):
 
 def test_an_exercise_accepts_its_answer_and_no_other_number(opened):
     page = opened("lessons/four_bar.html", viewport=TALL)
-    page.wait_for_selector("#lesson.ready")
     exercise = page.locator("form[data-answer=rocker_angle]")
     for given, verdict in (("2,9", "Right. The page computes 2.9056."), ("-2.9", "The size is right"), ("3", "Not so")):
         exercise.locator("input").fill(given)
@@ -255,7 +247,6 @@ def test_a_motion_about_one_point_gives_no_shapes_and_a_wrong_link_changes_nothi
 
 def test_a_link_restores_the_numbers_of_an_erratum(opened):
     page = opened("lessons/skate.html", viewport=TALL)
-    page.wait_for_selector("#lesson.ready")
     page.locator("#part-5 .why summary").click()
     values = page.locator("#part-5 tbody code")
     before = values.all_text_contents()

@@ -50,7 +50,6 @@ UNNAMED = """() => [...document.querySelectorAll('#lesson .drag')].filter((each)
 @pytest.mark.parametrize("lesson", [marked(lesson.name) for lesson in LESSONS])
 def test_controls_are_large_enough_for_fingers_and_the_picture_leaves_room_for_the_text(opened, lesson):
     page = opened(f"lessons/{lesson}.html", viewport=PHONE, reduced_motion="reduce")
-    page.wait_for_selector("#lesson.ready")
     page.evaluate("document.querySelectorAll('#lesson details').forEach((each) => { each.open = true; })")
     assert page.evaluate(SMALL) == []
     assert page.evaluate(UNNAMED) == []
@@ -60,7 +59,6 @@ def test_controls_are_large_enough_for_fingers_and_the_picture_leaves_room_for_t
 
 def test_the_first_picture_enlarges_differences_that_are_too_small_to_be_seen(opened):
     page = opened("lessons/four_bar.html", viewport=PHONE, reduced_motion="reduce")
-    page.wait_for_selector("#lesson.ready")
     lens = page.locator(".lens > svg").bounding_box()
     assert lens["y"] + lens["height"] < 0.4 * PHONE["height"]  # the magnifier is in the window
     assert "drawn 5 times as large" in page.inner_text(".remark >> nth=0")
@@ -75,7 +73,6 @@ def test_the_first_picture_enlarges_differences_that_are_too_small_to_be_seen(op
 
 def test_the_keyboard_plays_a_motion_moves_the_time_and_switches_overlays(opened):
     page = opened("lessons/four_bar.html", reduced_motion="reduce")
-    page.wait_for_selector("#lesson.ready")
     clock = page.locator(".clock")
     body = page.locator(".motion.truth .body").first
     page.locator(".play").focus()
