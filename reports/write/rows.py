@@ -1,5 +1,4 @@
-"""Selections of rows. Rows with selections. A missing row is UNMEASURED, so that a template can leave out a clause
-without numbers."""
+"""Selections of rows. A missing row is UNMEASURED, so that a template can leave out a clause without numbers."""
 
 from __future__ import annotations
 
