@@ -67,8 +67,9 @@ def to_rounding(
 def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, ...]:
     """The experiments with their texts from `experiments.md` in the folder of the file `source`. A section consists of
     the experiment's title, a paragraph with the expectation, optional paragraphs with the lesson, and an optional list
-    of claims (`reports.pages.claims`). All texts are templates with `values` and the experiment's context. Raises
-    ValueError unless the sections have the titles of the experiments, in the same order."""
+    of claims (`reports.pages.claims`). All texts are templates with `values` and the experiment's context. A value
+    that is a function is called when the page is written. Raises ValueError unless the sections have the titles of the
+    experiments, in the same order."""
     text = Path(source).with_name("experiments.md").read_text(encoding="utf-8")
     sections = {}
     for section in text.removeprefix("## ").split("\n## "):
@@ -81,7 +82,8 @@ def described(source: str, *failures: Failure, **values: Any) -> tuple[Failure, 
 
 def _with_text(failure: Failure, paragraphs: Iterable[str], values: Mapping[str, Any]) -> Failure:
     def context(material: Material) -> Mapping[str, Any]:
-        return {**values, **failure.context(material)}
+        computed = {name: value() if callable(value) else value for name, value in values.items()}
+        return {**computed, **failure.context(material)}
 
     texts = [
         paragraph if paragraph.startswith("|") else " ".join(paragraph.split())

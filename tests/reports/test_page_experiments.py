@@ -28,8 +28,8 @@ from reports.model.page import Failure, Material
 from reports.model.tasks import Answer, Motion, Task, trajectory_of
 from reports.pages import claims, common
 from reports.pages.centrodes import page as centrodes
+from reports.pages.engines.examples import ELEMENT_EXAMPLES
 from reports.pages.engines.page import (
-    ELEMENT_EXAMPLES,
     HAS_NONE,
     MATRIX,
     NOT_BUILT,

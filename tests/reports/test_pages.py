@@ -32,7 +32,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_context
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
-from reports.pages.engines.page import ELEMENT_EXAMPLES
+from reports.pages.engines.examples import ELEMENT_EXAMPLES
 from reports.pages.errata import page as referees
 from reports.pages.faults.page import Offsets
 from reports.pages.findings import findings

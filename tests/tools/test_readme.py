@@ -152,9 +152,9 @@ def test_the_list_of_commands_imports_nothing_that_only_a_run_needs():
     assert done.stderr.split() == []
 
 
-def test_commands_that_draw_nothing_import_no_package_for_drawings_and_pages():
-    """The modules of `run` and `check` include all scenes and pages, whose functions import these packages."""
+def test_the_modules_of_scenes_and_pages_import_slow_packages_when_they_need_them():
+    """`run` and `check` import all scenes and pages, and use few of them."""
     code = "import sys, reports.cli.run, reports.check.document, reports.check.telling\n"
-    code += "print(*{'matplotlib', 'jinja2', 'scipy.interpolate'} & set(sys.modules))"
+    code += "print(*{'matplotlib', 'jinja2', 'scipy.linalg', 'scipy.special'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []

@@ -17,13 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engines import Unsupported, method_name, registry
-from engines.conformance.moving import FORCE_EXAMPLES
-from engines.conformance.worlds import MOVING, WORLDS
 from engines.tree import spanning_tree
-from reference.couplings import Coupling, Term
-from reference.forces import CoupledForce
-from reference.joints import Gear, Pin, Rod, Skate, Weld
-from reference.mechanism import Body, Mechanism
+from reference.joints import Skate
+from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
 from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
@@ -52,44 +48,23 @@ class BuildingTask(MethodTask):
 
 
 BUILD_STEP = 1e-2  # s
-WORLD = {world.name: world.mechanism for world in (*WORLDS, *MOVING)}
-_WHEELS = tuple(Body(name, 1.0, 0.1, (x, 0.0, 0.0)) for name, x in (("first", 0.0), ("second", 1.0)))
-_AXLES = tuple(Pin(f"axle of the {body.name}", None, body.name, body.pose[:2], (0.0, 0.0)) for body in _WHEELS)
-_TURNS = (Term(None, "first", 1.0), Term(None, "second", 2.0))
-_DOWN = (0.0, -10.0)
-# Line of the table -> a mechanism with this element. There is an example of each class of joints and forces.
-ELEMENT_EXAMPLES = {
-    "hinge": WORLD["swinging bar"],
-    "loop": WORLD["swinging parallelogram"],
-    "drive": WORLD["driven crank"],
-    "slot": WORLD["sliding block"],
-    "slot in a loop": WORLD["trammel"],
-    "rod": Mechanism(_WHEELS[1:], (Rod("rod", None, "second", (0.0, 0.0), (0.0, 0.0), 1.0),), _DOWN),
-    "weld": Mechanism(_WHEELS, (_AXLES[0], Weld("weld", "first", "second", (0.5, 0.0), (-0.5, 0.0))), _DOWN),
-    "gear": Mechanism(_WHEELS, (*_AXLES, Gear("gear", "first", "second", -2.0))),
-    "coupling": Mechanism(_WHEELS, (*_AXLES, Coupling("coupling", _TURNS))),
-    **{
-        force.name: Mechanism(_WHEELS[:1], _AXLES[:1], _DOWN, (replace(force, second="first"),))
-        for force in FORCE_EXAMPLES
-    },
-    "coupled force": Mechanism(_WHEELS, _AXLES, _DOWN, (CoupledForce("coupled force", _TURNS, force=1.0),)),
-    "skate": WORLD["sleigh"],
-    "disc rolls on a line": WORLD["disc on a slope"],
-    "disc rolls in a ring": WORLD["disc in a hole"],
-}
-
 YES, CONTACT, CODE = "yes", "by contact", "with our code"
 HAS_NONE, NOT_BUILT, TOO_OLD = "**has none**", "not built", "too old"
 
 
 @dataclass(frozen=True)
 class Capabilities(BuildingTask):
-    """The elements that an engine builds. Each line of ELEMENT_EXAMPLES has a word for the table. The reason of a
-    refusal has the key `reason_key(line)`. A run determines `reactions` and `width`."""
+    """The elements that an engine builds. Each line of `examples.ELEMENT_EXAMPLES` has a word for the table. The reason
+    of a refusal has the key `reason_key(line)`. A run determines `reactions` and `width`."""
 
     description: ClassVar[str] = "what it builds"
 
     def run(self) -> Values:
+        from reports.pages.engines.examples import (  # A run of other cells does not need these mechanisms.
+            ELEMENT_EXAMPLES,
+            WORLD,
+        )
+
         values: dict[str, str] = {}
         for line, mechanism in ELEMENT_EXAMPLES.items():
             values[line], values[reason_key(line)] = self._build(mechanism)
@@ -243,6 +218,8 @@ def comparable_error(row: Measurement | None, field: str = "angle") -> float:
 
 def word_and_reason(task: Capabilities, answer: Answer, line: str) -> tuple[str, str]:
     """The word of a line and the reason of a refusal, from the capability table or from the stored answer."""
+    from reports.pages.engines.examples import ELEMENT_EXAMPLES
+
     capability = task.method.capability
     if capability and (refusal := capability.refusal(ELEMENT_EXAMPLES[line])):
         return _word_of(refusal), str(refusal)
@@ -251,6 +228,8 @@ def word_and_reason(task: Capabilities, answer: Answer, line: str) -> tuple[str,
 
 def matrix(answers: Mapping[Capabilities, Answer]) -> str:
     """A Markdown table with a column for each engine and a line for each element; empty without answers."""
+    from reports.pages.engines.examples import ELEMENT_EXAMPLES
+
     engines = [task.method for task in answers]
     body = [[line, *(word_and_reason(*pair, line)[0] for pair in answers.items())] for line in ELEMENT_EXAMPLES]
     body += [[line, *(str(answer.values[line]) for answer in answers.values())] for line in ("reactions", "width")]
@@ -260,6 +239,8 @@ def matrix(answers: Mapping[Capabilities, Answer]) -> str:
 
 def refusals_of(answers: Mapping[Capabilities, Answer]) -> list[tuple[str, str, str, str]]:
     """A row (engine, line, word of the table, reason) for each element that is not built."""
+    from reports.pages.engines.examples import ELEMENT_EXAMPLES
+
     found = [
         (task, line, *word_and_reason(task, answer, line))
         for task, answer in answers.items()

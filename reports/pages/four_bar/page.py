@@ -190,7 +190,7 @@ PAGE = scene_page(
             "Worse as the step shrinks",
             cells=cells(SpinningFourBar(), (mujoco.DEFAULT, mujoco.TUNED), (1, 10, 100, 1000)),
         ),
-        stops=f"{OverdrivenFourBar().stopping_time:.4f}",
+        stops=lambda: f"{OverdrivenFourBar().stopping_time:.4f}",
     ),
     figures=figures,
     context=context,

@@ -95,7 +95,7 @@ PAGE = scene_page(
                 ONCE, (Lagrange("rk4", "none"), Lagrange("rk4", "baumgarte"), Lagrange("rk4", "projection")), (1, 3, 10)
             ),
         ),
-        first=f"{NFourBar().singular_times(5.0)[0]:.4f}",
+        first=lambda: f"{NFourBar().singular_times(5.0)[0]:.4f}",
     ),
     figures=figures,
     context=context,

@@ -194,7 +194,7 @@ PAGE = scene_page(
             context=absence,
         ),
         Failure("Steps far too large", cells=TOO_LARGE, context=least_opening),
-        corner=f"{SquareOnCatenaries().corner:.4f}",
+        corner=lambda: f"{SquareOnCatenaries().corner:.4f}",
     ),
     compared=compared,
     figures=figures,
