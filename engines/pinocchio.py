@@ -18,9 +18,8 @@ The engine has the gear JointModelMimic, which `constraintDynamics` refuses.
 `constraintDynamics` sums forces, and torques about the world's origin, along the tree. Rounding is therefore large for
 a light body that carries a heavy body, and for a mechanism far from the origin.
 
-As shipped the engine does not reduce the gap of a loop. With a `correction` c [1/s] the Baumgarte gains are c^2 and 2
-c. Depending on the motion and the step, the gains increase or reduce the errors of both integrators. Therefore no
-variant has a `correction`.
+As shipped the engine does not reduce the gap of a loop. Depending on the motion and the step, Baumgarte gains of the
+constraints increase or reduce the errors of both integrators. Therefore the adapter sets no gains.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.sampling import sampled
 from engines.single_run import ExtraEngine, Recorded
 from engines.tree import TREE_FORCES_COST, Link, Tree, pushes, spanning_tree, world_ends
-from reference.checks import Name, NonNegative, validated
+from reference.checks import Name, validated
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
 from reference.rolling.roll import Roll
@@ -57,9 +56,7 @@ PINOCCHIO_JOINTS = {Pin: "CONTACT_3D", Weld: "CONTACT_6D", Slot: "", Drive: ""}
 
 @dataclass(frozen=True)
 class Pinocchio(ExtraEngine):
-    """integrator: "euler" (semi-implicit, order 1) or "rk4" (order 4).
-    correction: Baumgarte correction of loops [1/s].
-    """
+    """integrator: "euler" (semi-implicit, order 1) or "rk4" (order 4)."""
 
     name = "pinocchio"
     packages = ("pin",)
@@ -79,7 +76,6 @@ class Pinocchio(ExtraEngine):
 
     variant: Name
     integrator: Integrator = "euler"
-    correction: NonNegative = 0.0
 
     @validated
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
@@ -104,14 +100,14 @@ class Pinocchio(ExtraEngine):
         return "ours" if joint in spanning_tree(mechanism).drives else "engine"
 
     def model(self, mechanism: Mechanism, dt: float) -> PinocchioModel:
-        return PinocchioModel(spanning_tree(mechanism), dt, self.integrator, self.correction)
+        return PinocchioModel(spanning_tree(mechanism), dt, self.integrator)
 
 
 class PinocchioModel:
-    def __init__(self, tree: Tree, dt: float, integrator: Integrator, correction: float) -> None:
+    def __init__(self, tree: Tree, dt: float, integrator: Integrator) -> None:
         import pinocchio
 
-        self.pin, self.mechanism, self.tree, self.dt, self.correction = pinocchio, tree.mechanism, tree, dt, correction
+        self.pin, self.mechanism, self.tree, self.dt = pinocchio, tree.mechanism, tree, dt
         self.step = runge_kutta_step if integrator == "rk4" else euler_step
         mechanism = self.mechanism
         self.model = pinocchio.Model()
@@ -177,11 +173,7 @@ class PinocchioModel:
         for body, offset in world_ends(self.mechanism, joint):
             ends += [self.joints[body], self._placed(np.array(offset) - self.anchors[body])]
         kind = getattr(self.pin.ContactType, PINOCCHIO_JOINTS[type(joint)])
-        loop = self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
-        if self.correction:
-            gains = self.pin.BaumgarteCorrectorParameters(self.correction**2, 2 * self.correction)
-            loop.setBaumgarteCorrectorParameters(gains)
-        return loop
+        return self.pin.RigidConstraintModel(kind, self.model, *ends, self.pin.ReferenceFrame.LOCAL)
 
     def _constrained(self, position: Array, velocity: Array, torque: Array) -> Array:
         acceleration = self.pin.constraintDynamics(
@@ -204,8 +196,7 @@ class PinocchioModel:
     def _responses(self, position: Array) -> Array:
         rest, weight = np.zeros(self.tree.coordinates), self.model.gravity.linear.copy()
         self.model.gravity.linear = np.zeros(3)
-        correction = self._constrained(position, rest, rest) if self.correction else 0.0
-        responses = np.array([self._constrained(position, rest, row) - correction for row in self.driven])
+        responses = np.array([self._constrained(position, rest, row) for row in self.driven])
         self.model.gravity.linear = weight
         return responses
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from engines.mujoco.engine import MuJoCo, bare_loop
-from engines.mujoco.methods import DEFAULT, DRIVES, EXTENDED, METHODS, TUNED, VARIANTS
+from engines.mujoco.methods import DEFAULT, EXTENDED, METHODS, TUNED, VARIANTS
 from engines.mujoco.stiffness import Hardened, Shipped, TiedToStep
 
-__all__ = ["DEFAULT", "DRIVES", "EXTENDED", "METHODS", "TUNED", "VARIANTS"]
+__all__ = ["DEFAULT", "EXTENDED", "METHODS", "TUNED", "VARIANTS"]
 __all__ += ["Hardened", "MuJoCo", "Shipped", "TiedToStep", "bare_loop"]

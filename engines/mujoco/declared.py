@@ -87,8 +87,6 @@ class DependentRows(RuntimeError):
 
 def why_no_law(engine: MuJoCo, mechanism: Mechanism, dt: float) -> str:
     """The reason why a construction of a joint has no law at an instant, or "" if there is no such construction."""
-    if engine.drive != "inertia" and any(all(joint.is_angular) for joint in mechanism.joints):
-        return f"a drive by {engine.drive!r} obeys no law of an instant"
     if engine.skates in STEPWISE and any(isinstance(joint, Skate) for joint in mechanism.joints):
         return "a blade whose row is that of another pose obeys no law of an instant"
     regularisation = engine.regularisation(mechanism, dt)

@@ -23,7 +23,7 @@ from engines import (
 )
 from engines.motions import is_prescribed, over_three, turns_steadily
 from engines.mujoco import declared
-from engines.mujoco.joints.links import DriveBy, RodBy, SlotBy, free_link_on_fixed_line
+from engines.mujoco.joints.links import RodBy, SlotBy, free_link_on_fixed_line
 from engines.mujoco.joints.roll import RollBy, RollContact
 from engines.mujoco.joints.skate import STEPWISE, SkateBy, slip_damping
 from engines.mujoco.model import MUJOCO_CAPABILITY, Coordinates, MuJoCoModel, build_model
@@ -49,7 +49,7 @@ class MuJoCo(Engine, Valid):
     """Settings of MuJoCo; raises ValueError for invalid settings.
 
     `coordinates`: with "tree" a body moves relative to its parent in a kinematic tree, and only loops need constraints.
-    `drive`, `slots`, `skates`, `rolls`, `rods`: constructions of these joints, see `engines.mujoco.joints`. `armature`:
+    `slots`, `skates`, `rolls`, `rods`: constructions of these joints, see `engines.mujoco.joints`. `armature`:
     armature of a driven joint relative to the inertia of the mechanism; the relative error of the rate is about 0.1 /
     armature. `solvers`: the first of these solvers that solves the equations at t = 0 is used. `tolerance`: tolerance
     of the solver, relative to the inertia of the coordinates without drives. `estimates`: whether methods of order 4
@@ -65,7 +65,6 @@ class MuJoCo(Engine, Valid):
     integrator: Integrator = "Euler"
     stiffness: Stiffness = field(default_factory=Shipped)
     coordinates: Coordinates = "tree"
-    drive: DriveBy = "inertia"
     armature: Positive = 1e8
     solvers: tuple[Solver, ...] = ("Newton",)
     iterations: Count = 100
@@ -91,15 +90,12 @@ class MuJoCo(Engine, Valid):
     def order(self, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
         tree = self._tree(mechanism)
         has_skates, has_rolls = _has(mechanism, Skate), _has(mechanism, Roll)
-        is_driven = any(isinstance(joint, Drive) and not tree.holds(joint) for joint in mechanism.joints)
         is_tied = tree.closed and isinstance(self.stiffness, TiedToStep)
         order, gap = ORDER if self.integrator == "RK4" else 1, None if tree.closed or has_rolls else EXACT
         # For a row at the predicted pose, the slip has order 2; otherwise it has order 1.
         slip = 2 if self.skates == "predicted tendon" else None
-        overwritten = "a state that is overwritten between steps obeys no equation of which an order is known"
         # The first entry with a true condition applies.
-        table: tuple[tuple[bool, ConvergenceOrder | NotDeclared], ...] = (
-            (is_driven and self.drive == "overwrite", NotDeclared(overwritten)),
+        table: tuple[tuple[bool, ConvergenceOrder], ...] = (
             # The row of a contact lacks the rate of change of its direction.
             (has_rolls and self.uses_contacts, ConvergenceOrder(1)),
             (has_skates and self.skates != "rows", ConvergenceOrder(1, gap=gap, slip=slip)),
@@ -123,13 +119,11 @@ class MuJoCo(Engine, Valid):
     def enforcement(self, joint: Joint, mechanism: Mechanism) -> Enforcement:
         """Tree coordinates, connects, tendons and contacts are "engine".
 
-        If a callback writes the rows, the result is "engine, our rows". If our code overwrites the state, it is "ours".
+        If a callback writes the rows, the result is "engine, our rows".
         """
         MUJOCO_CAPABILITY.require(mechanism)
         tree = self._tree(mechanism)
         match joint:
-            case Drive():
-                return "ours" if self.drive == "overwrite" and not tree.holds(joint) else "engine"
             case Slot():
                 by_row = tree.closes_by(joint) and free_link_on_fixed_line(joint, tree) is None
                 uses_our_rows = self.slots == "rows" and by_row
@@ -139,7 +133,7 @@ class MuJoCo(Engine, Valid):
                 uses_our_rows = self.skates != "blade"
             case Roll():
                 uses_our_rows = self.rolls == "rows"
-            case Pin() | Weld() | Gear() | Coupling():
+            case Pin() | Weld() | Gear() | Drive() | Coupling():
                 uses_our_rows = False
             case _:
                 assert_never(joint)
@@ -197,7 +191,7 @@ class MuJoCo(Engine, Valid):
         size = Size(
             bodies=model.compiled.nbody - 1,
             coordinates=model.compiled.nq,
-            rows=model.rows + (len(model.driven) if self.drive != "overwrite" else 0),
+            rows=model.rows + len(model.driven),
             solver_rows=data.nefc,
         )
         order = self.order(mechanism) if self.estimates else None

@@ -43,7 +43,6 @@ METHODS = (
     replace(TUNED, variant="RK4 alone", stiffness=Shipped(), rolls=RollContact()),
     replace(EXTENDED, variant="extended, free coordinates", coordinates="free"),
 )
-DRIVES = (replace(DEFAULT, variant="default, overwritten crank", drive="overwrite"),)
 
 # The blade of DEFAULT, with the integrator Euler and the largest damping that the step allows.
 SKATES = (replace(TUNED, variant="friction blade", skates="blade", integrator="Euler"),)

@@ -15,7 +15,7 @@ from engines import Unsupported
 from engines.capability import Capability
 from engines.mujoco.builder import DrivenCoordinate, Hooks, ModelBuilder, add_body, add_hinge, add_slide
 from engines.mujoco.forces import FORCE_CONSTRUCTIONS
-from engines.mujoco.joints.links import DriveBy, add_drives, add_gears, add_pins, add_rods, add_slots, add_welds
+from engines.mujoco.joints.links import add_drives, add_gears, add_pins, add_rods, add_slots, add_welds
 from engines.mujoco.joints.roll import add_rolls
 from engines.mujoco.joints.skate import add_skates
 from engines.mujoco.releases import NO_ISLANDS
@@ -53,7 +53,6 @@ class MuJoCoModel:
     compiled: Any  # mujoco.MjModel.
     address: list[int]  # Index in qpos and qvel by tree coordinate.
     driven: tuple[DrivenCoordinate, ...]
-    drive: DriveBy
     hooks: Hooks = field(default_factory=Hooks)
     rows: int = 0  # number of scalar constraints that forces enforce, without drives
     has_user_rows: bool = False
@@ -136,7 +135,6 @@ def build_model(
         compiled,
         address,
         tuple(builder.driven),
-        settings.drive,
         hooks,
         rows=builder.row_count + sum(joint.size for joint in builder.user_rows),
         has_user_rows=bool(builder.user_rows),

@@ -204,30 +204,20 @@ class MuJoCoRun(OneShot):
         position, velocity = np.empty((len(counts), compiled.nq)), np.empty((len(counts), compiled.nv))
         clock = np.empty(len(counts))
         qpos, qvel, step = data.qpos, data.qvel, mujoco.mj_step
-        overwrites = self.model.drive == "overwrite" and self.model.driven
         before_step = self.model.hooks.before_step
 
         def advance(count: int) -> None:
-            if not (before_step or overwrites):
+            if not before_step:
                 step(compiled, data, nstep=count)
                 return
             for _ in range(count):
-                if before_step:
-                    before_step(compiled, data)
+                before_step(compiled, data)
                 step(compiled, data)
-                if overwrites:
-                    self._overwrite()
 
         def record(sample: int) -> None:
             position[sample], velocity[sample], clock[sample] = qpos, qvel, data.time
 
         return position, velocity, clock, sampled(np.diff(counts).tolist(), advance, record)
-
-    def _overwrite(self) -> None:
-        for driven in self.model.driven:
-            index = self.model.address[driven.column]
-            self.data.qpos[index] = driven.rate * self.data.time
-            self.data.qvel[index] = driven.rate
 
     def _accelerations(
         self, position: Array, velocity: Array, t: Array, evaluated: NDArray[np.bool_]

@@ -28,13 +28,12 @@ from engines.pymunk.convergence import (
 )
 from engines.pymunk.iterations import CONVERGED_RESIDUAL
 from engines.pymunk.joints.drive import find_cranks, find_turned
-from engines.pymunk.joints.slide import GROOVE_HALF_LENGTH, along_blade, groove_is_exact
+from engines.pymunk.joints.slide import along_blade, groove_is_exact
 from engines.pymunk.model import CONSTRAINT_ROWS, Model
 from engines.pymunk.running import Recording, record
 from reference.couplings import Coupling
 from reference.joints import Drive, Gear, Joint, Pin, Rod, Skate, Slot, Weld
 from reference.mechanism import Mechanism
-from reference.plane import rotated
 from reference.rolling.roll import Roll
 
 if TYPE_CHECKING:
@@ -42,7 +41,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-GROOVE_LAW = "as its groove pushes"  # name of the check by the law of Chipmunk's groove joint
 LAW_ITERATION_LIMIT = 20_000
 
 Kind = Literal[
@@ -81,8 +79,6 @@ ORDERS: Mapping[Kind, tuple[ConvergenceOrder, ConvergenceOrder, ConvergenceOrder
 
 
 def order(engine: Pymunk, mechanism: Mechanism) -> ConvergenceOrder | NotDeclared:
-    if engine.slot == "groove" and any(_is_link(joint, mechanism) for joint in mechanism.joints):
-        return NotDeclared("a groove off the centre of mass of a body that turns has a wrong impulse at any step")
     if engine.skate in ("centre", "point") and any(_is_off_centre(joint) for joint in mechanism.joints):
         return NotDeclared("setting a velocity to zero ignores that a force at the blade turns the body, at any step")
     if isinstance(engine.iterations, int) and _is_unstable(engine, mechanism, engine.iterations):
@@ -127,7 +123,7 @@ def _is_unstable(engine: Pymunk, mechanism: Mechanism, iterations: int) -> bool:
 def enforcement(engine: Pymunk, joint: Joint, mechanism: Mechanism) -> Enforcement:
     """The enforcement of a joint, which is "engine, our rows" if our code places the joint before every step."""
     match joint:
-        case Slot() if engine.slot == "exact" and _is_link(joint, mechanism):
+        case Slot() if _is_link(joint, mechanism):
             return "engine, our rows"
         case Skate():
             return "engine, our rows" if engine.skate == "groove" else "ours"
@@ -144,7 +140,7 @@ def _is_off_centre(joint: Joint) -> bool:
 
 
 def _is_link(joint: Joint, mechanism: Mechanism) -> bool:
-    """Whether the construction "exact" of a slot is a `MovedPinJoint`, since a groove would be wrong."""
+    """Whether the construction of a slot is a `MovedPinJoint`, since a groove would be wrong."""
     if not isinstance(joint, Slot):
         return False
     cranks, turned = find_cranks(mechanism), find_turned(mechanism)
@@ -169,10 +165,9 @@ def instants(
     model, recording = converged
     out: list[Instant] = []
     for step in range(1, max(steps, 1) + 1):
-        for check in ("velocity", GROOVE_LAW) if engine.slot == "groove" else ("velocity",):
-            law, free = _law(model, mechanism, recording, step, dt, with_grooves=check == GROOVE_LAW)
-            velocity = recording.after[step]
-            out.append(Instant(check, (recording.pose[step], velocity), velocity, law, (free,)))
+        law, free = _law(model, mechanism, recording, step, dt)
+        velocity = recording.after[step]
+        out.append(Instant("velocity", (recording.pose[step], velocity), velocity, law, (free,)))
     return tuple(out)
 
 
@@ -189,15 +184,8 @@ def _converged(
         iterations = math.ceil(math.log(CONVERGED_RESIDUAL) / math.log(rho)) + 5 if rho > 0 else 5
         if iterations > LAW_ITERATION_LIMIT:
             return NotDeclared(f"an iteration leaves {rho:.6f} of the slowest mode, so the iterations do not converge")
-        if engine.slot == "groove":  # the convergence factor is not valid for groove joints
-            iterations = LAW_ITERATION_LIMIT
         model = engine.model_with(built, dt, replace(engine.plan(built, 0.0), iterations=iterations))
         recording = record(model, dt, steps, 1, raw=engine.leapfrog)
-        if (
-            engine.slot == "groove"
-            and not np.abs(recording.pose[..., :2]).max() < GROOVE_HALF_LENGTH * mechanism.length_scale
-        ):
-            return NotDeclared("the known defect of GrooveJoint moved the bodies beyond the groove's ends")
         if not (np.isfinite(recording.pose).all() and np.isfinite(recording.after).all()):
             raise RuntimeError(f"the motion is not finite within {steps} steps {recording.stopped}".strip())
         rho = max(convergence_factor_at(mechanism, pose) for pose in recording.pose)
@@ -205,15 +193,8 @@ def _converged(
             return model, recording
 
 
-def _law(
-    model: Model, mechanism: Mechanism, recording: Recording, step: int, dt: float, with_grooves: bool = False
-) -> tuple[Array, Array]:
-    """The velocities (bodies, 3) after a step according to the law, and the velocities without joints.
-
-    `with_grooves`: slots are groove joints of Chipmunk. A groove joint solves for both directions at the anchor and
-    keeps the component along the normal n. With the inverse mass matrix K at the anchor, n^T K^-1 times the relative
-    velocity at the anchor becomes zero.
-    """
+def _law(model: Model, mechanism: Mechanism, recording: Recording, step: int, dt: float) -> tuple[Array, Array]:
+    """The velocities (bodies, 3) after a step according to the law, and the velocities without joints."""
     # In pymunk, springs are also constraints, but their error_bias has no effect.
     joints = [constraint for constraint in model.space.constraints if type(constraint) in CONSTRAINT_ROWS]
     bias = min((constraint.error_bias for constraint in joints), default=0.0)
@@ -222,37 +203,4 @@ def _law(
     gap = np.nan_to_num(mechanism.gap(pose, step * dt))
     free = before + dt * mechanism.unconstrained(pose, before)
     rows, right = mechanism.rows(pose), mechanism.rate - corrected * gap / dt
-    if not with_grooves:
-        return constrained(rows, right, mechanism.inertias, free).motion, free
-    inverse_mass = 1 / mechanism.inertias.reshape(-1)
-    solved = _rows_of_grooves(mechanism, pose, gap, inverse_mass)
-    impulse = np.linalg.solve((solved * inverse_mass) @ rows.T, right - solved @ free.reshape(-1))
-    return free + (inverse_mass * (rows.T @ impulse)).reshape(-1, 3), free
-
-
-def _rows_of_grooves(mechanism: Mechanism, pose: Array, gap: Array, inverse_mass: Array) -> Array:
-    """The rows (rows, 3 bodies) whose velocities a step sets; the row of a groove is n^T K^-1 J / n^T K^-1 n.
-
-    J (2, 3 bodies) maps twists to the relative velocity of two points: the anchor on the second body, and the anchor's
-    foot of the perpendicular on the groove of the first body.
-    """
-    out, row = mechanism.rows(pose), 0
-    for joint in mechanism.joints:
-        if isinstance(joint, Slot):
-            first, second = (
-                pose[mechanism.body_index(name)] if name else np.zeros(3) for name in (joint.first, joint.second)
-            )
-            line = first[2] + joint.line_angle
-            normal = np.array([-math.sin(line), math.cos(line)])
-            anchor = second[:2] + rotated(second[2], np.array(joint.second_point))
-            foot = anchor - gap[row] * normal
-            jacobian = np.zeros((2, out.shape[1]))
-            for name, body, point, sign in ((joint.first, first, foot, -1.0), (joint.second, second, anchor, 1.0)):
-                if name:
-                    x, y = point - body[:2]
-                    begin = 3 * mechanism.body_index(name)
-                    jacobian[:, begin : begin + 3] = sign * np.array([[1.0, 0.0, -y], [0.0, 1.0, x]])
-            weights = np.linalg.solve((jacobian * inverse_mass) @ jacobian.T, normal)
-            out[row] = weights @ jacobian / (weights @ normal)
-        row += joint.size
-    return out
+    return constrained(rows, right, mechanism.inertias, free).motion, free

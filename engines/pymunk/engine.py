@@ -15,7 +15,7 @@ from engines.pymunk import declared
 from engines.pymunk.convergence import MIN_ITERATIONS
 from engines.pymunk.iterations import IterationPlan, Whole, plan_by_rule, plan_with, worst_factor
 from engines.pymunk.joints.roll import SHIPPED_CONTACT, ContactSettings, RollConstruction
-from engines.pymunk.joints.slide import SkateConstruction, SlotConstruction
+from engines.pymunk.joints.slide import SkateConstruction
 from engines.pymunk.model import PYMUNK_CAPABILITY, Model, Settings, build_model
 from engines.pymunk.running import PymunkRun
 from reference.checks import Count, Fraction, Name, NonNegative, Positive, Valid, validated
@@ -48,8 +48,8 @@ class Pymunk(Engine, Valid):
     iterations only if the product of iterations and joints is at most `max_work`. `startup_steps`: number of steps in
     each stage of the start-up, in which the iterations decrease; 0 for no start-up.
 
-    `leapfrog`: start with half a kick and average the velocities. `skate`, `roll`, `slot`: constructions of these
-    joints (`joints.slide` and `joints.roll`). `contact`: settings of contacts for a Roll.
+    `leapfrog`: start with half a kick and average the velocities. `skate`, `roll`: constructions of these joints
+    (`joints.slide` and `joints.roll`). `contact`: settings of contacts for a Roll.
 
     A model with a `gain` below 1 uses the step as the unit of time. In seconds, the error_bias would underflow to 0
     (gain 1) for small steps.
@@ -65,7 +65,6 @@ class Pymunk(Engine, Valid):
     leapfrog: bool = False
     skate: SkateConstruction = "centre"
     roll: RollConstruction = "contact"
-    slot: SlotConstruction = "exact"
     contact: ContactSettings = SHIPPED_CONTACT
     startup_steps: Whole = 0
     min_iterations: Count = MIN_ITERATIONS
@@ -145,7 +144,7 @@ class Pymunk(Engine, Valid):
         bias, unit = self.error_bias, 1.0
         if isinstance(bias, str):
             bias, unit = 1 - plan.gain, (1.0 if plan.gain == 1 else dt)
-        settings = Settings(plan.iterations, float(bias), unit, self.skate, self.roll, self.slot, self.contact)
+        settings = Settings(plan.iterations, float(bias), unit, self.skate, self.roll, self.contact)
         return build_model(mechanism, settings)
 
 

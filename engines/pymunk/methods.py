@@ -41,10 +41,5 @@ SKATE_GROOVE = Pymunk("skate: groove, predicted heading", skate="groove")
 SKATE_GROOVE_EXTRAPOLATED = replace(EXTENDED.skates, variant="skate: groove, extrapolated")
 SKATE_METHODS = (SKATE_CENTRE, SKATE_POINT, SKATE_PROJECTED, SKATE_GROOVE, SKATE_GROOVE_EXTRAPOLATED)
 
-# For a round body these methods are equal, since its shape is a circle.
-POLYGON_CORNERS = (8, 32, 128, 512)
-ROLL_FACETED = tuple(
-    Pymunk(f"roll: contact, {corners} corners", roll="contact", contact=ContactSettings(1.0, 1.0, vertices=corners))
-    for corners in POLYGON_CORNERS
-)
+ROLL_POLYGON = Pymunk("roll: contact, 512 corners", contact=UNCORRECTED_OVERLAP)
 ROLL_PIVOT = Pymunk("roll: pivot, predicted contact", 5, 0.0, leapfrog=True, roll="pivot")

@@ -35,7 +35,6 @@ from engines.pymunk.joints.slide import (
     AfterStep,
     BeforeStep,
     SkateConstruction,
-    SlotConstruction,
     build_skate,
     build_slot,
 )
@@ -63,7 +62,6 @@ class Settings:
     unit: float  # Unit of time of the model [s].
     skate: SkateConstruction
     roll: RollConstruction
-    slot: SlotConstruction = "exact"
     contact: ContactSettings = SHIPPED_CONTACT
 
 
@@ -226,7 +224,7 @@ class _Builder:
 
     def slot(self, joint: Slot, pair: Pair) -> Constraints:
         scale = self.mechanism.length_scale
-        rows, updates = build_slot(joint, self.settings.slot, *pair, *self.anchors(joint), scale)
+        rows, updates = build_slot(joint, *pair, *self.anchors(joint), scale)
         self.before_step += updates
         return rows
 

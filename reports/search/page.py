@@ -78,7 +78,7 @@ def draw_distribution(cases: Sequence[CaseResult]) -> Figure | None:
 def known_subjects(texts: Sequence[str]) -> list[Subject]:
     """All registered engines, and MuJoCo alone in the releases that occur in these chunks (JSON texts)."""
     releases = dict.fromkeys(release_of(json.loads(text)[0]) for text in texts)
-    engines = dict.fromkeys([*ENGINES, *OTHERS, plan.GROOVE_SUBJECT.engine])
+    engines = dict.fromkeys([*ENGINES, *OTHERS])
     return [*(Adapted(engine) for engine in engines), *(Alone(release) for release in releases if release is not None)]
 
 
@@ -171,9 +171,8 @@ def _finding_rows(cases: Sequence[CaseResult], small: Sequence[tuple[Shrink, Ans
     finds a case."""
     groups: dict[tuple[str, str], list[CaseResult]] = {}
     for case in cases:
-        if case.chunk.subject.name != plan.GROOVE_SUBJECT.name:
-            for check in case.result.faults:
-                groups.setdefault((case.chunk.subject.name, check), []).append(case)
+        for check in case.result.faults:
+            groups.setdefault((case.chunk.subject.name, check), []).append(case)
     smallest = {(task.subject.name, task.check): line_of(answer) for task, answer in reversed(small)}
     return [[*key, str(len(some)), smallest.get(key, ""), f"`{_command(some[0])}`"] for key, some in groups.items()]
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import secrets
 import subprocess
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from functools import cache
 from itertools import count
 
-from engines import Engine, Unsupported, pymunk
+from engines import Engine, Unsupported
 from engines.registry import INSTALLED, VARIANTS
 from reports.model.fingerprint import OURS, ROOT, SHORT, digest
 from reports.search import mechanisms
@@ -28,7 +27,6 @@ COMPILED_CASES = 20
 SINGULAR_CASES = 60  # Number of cases with nearly dependent rows, for engines with pins and rods.
 KIND_TRIALS = 60  # Number of mechanisms that are tried for one kind of joint.
 # Pymunk's usual slot, which may be wrong (see `engines.pymunk.joints.slide`).
-GROOVE_SUBJECT = Adapted(replace(pymunk.DEFAULT, variant="slots as grooves", slot="groove"))
 
 
 @cache
@@ -75,7 +73,7 @@ def all_subjects() -> list[Subject]:
 
 def published_chunks() -> list[Chunk]:
     """All engines in mechanisms of the commit's seeds, with the kinds that the engine supports. There are separate
-    chunks for nearly dependent rows and for pymunk's grooves.
+    chunks for nearly dependent rows.
     """
     out: list[Chunk] = []
     for seed, decades in zip(published_seeds(), SEED_DECADES, strict=True):
@@ -86,8 +84,6 @@ def published_chunks() -> list[Chunk]:
             if decades == 0 and {"pin", "rod"} <= {*kinds} and not shaped:
                 near = [kind for kind in ("pin", "spring", "force") if kind in kinds]
                 out += make_chunks([subject], seed, SINGULAR_CASES, (*near, TOGGLE), 0, DEFAULT_ORACLES)
-        if decades == 0:
-            out += make_chunks([GROOVE_SUBJECT], seed, PLANNED_CASES, ("pin", "slot"), 0, ("instant",))
     return out
 
 

@@ -167,7 +167,7 @@ ORACLES: Mapping[str, Oracle] = {
         "instant",
         "does the engine solve the equations that it declares for its settings?",
         lambda engine, mechanism, recipe, number: instant_errors(engine, mechanism),
-        (*LAW_CHECKS, "reaction", "as its groove pushes", BESIDE_CURVED),
+        (*LAW_CHECKS, "reaction", BESIDE_CURVED),
     ),
     "relations": Oracle(
         "description",

@@ -100,15 +100,6 @@ def test_an_engine_runs_again_after_its_process_was_ended_from_outside(name):
     assert np.array_equal(engine.build(mechanism, 1e-3)(3, 5).pose, before.pose)
 
 
-def test_two_runs_of_one_process_do_not_change_each_other():
-    engine, mechanism = engine_named("planck"), scene("free_four_bar").mechanism()
-    alone = engine.build(mechanism, 1e-3)(5, 10)
-    first, second = (engine.build(mechanism, 1e-3) for _ in range(2))
-    other = first(2, 10)
-    assert np.array_equal(second(5, 10).pose, alone.pose)
-    assert np.array_equal(other.pose, alone.pose[:3])
-
-
 def test_without_npm_the_installation_ends_with_one_line(monkeypatch, tmp_path):
     monkeypatch.setenv("PLANAR_CROSSCHECK_CACHE", str(tmp_path))
     monkeypatch.setenv("PATH", "")

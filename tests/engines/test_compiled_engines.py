@@ -77,12 +77,6 @@ def test_what_continuous_time_does_not_move_is_refused_by_name():
 BUILT = sorted({*PINNED, *FLYING, *LOOPS, "spring", "damper"})
 
 
-@pytest.mark.parametrize("solver", ["featherstone", "mujoco", "kamimo"])
-def test_another_solver_of_newton_is_refused_by_name(solver):
-    with pytest.raises(ValueError, match=f"solver is '{solver}'"):
-        replace(newton.DEFAULT, solver=solver)
-
-
 def test_joints_that_are_not_built_are_refused_by_name():
     with pytest.raises(Unsupported, match="'motor': our adapter of newton builds no motor"):
         newton.DEFAULT.build(MECHANISMS["a drive against its pin"], 1e-3)

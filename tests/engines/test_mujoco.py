@@ -154,21 +154,6 @@ def test_a_hundred_links_keep_their_energy() -> None:
     assert np.abs(total - total[0]).max() < 2e-8
 
 
-def test_an_overwritten_crank_opens_the_loop_at_any_step() -> None:
-    mechanism = DRIVEN.mechanism()
-    # MuJoCo's solver does not take the drive into account. For any step, the gap of the loop is about the acceleration
-    # times the square of the time constant.
-    gaps = []
-    for every in (10, 40):
-        engine = replace(DEFAULT, drive="overwrite")
-        motion = engine.build(mechanism, DRIVEN.spacing / every)(DRIVEN.samples, every)
-        gaps.append(np.abs(mechanism.gap(motion.pose, motion.t)[:, :8]).max())
-        # The angle of the crank is written at the time of the sample.
-        assert np.abs(mechanism.gap(motion.pose, motion.t)[:, 8]).max() < 1e-12
-        assert any(warning.startswith("ours:") for warning in motion.warnings)
-    assert gaps[1] > 0.5 * gaps[0] > 5e-3
-
-
 @pytest.mark.parametrize("stiffness", [Shipped(), TiedToStep(), TiedToStep(1.0), Hardened()])
 def test_every_spring_of_a_row_is_critically_damped(stiffness: Any) -> None:
     mechanism, dt = four_bar(crank_rate=10.0), 1e-3

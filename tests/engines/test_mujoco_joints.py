@@ -27,7 +27,7 @@ from reference.scenes.skates import ChaplyginSleigh
 from reference.trajectory import Trajectory
 from reports.search.mechanisms import mechanism as drawn
 from reports.search.parts import ALL_KINDS
-from tests.engines.test_matrix import SOFT, blade_on_a_board
+from tests.engines.test_matrix import SOFT
 from tests.mechanisms import rolling_disc
 
 ELLIPSE, DISC = RollingEllipse(), RollingDisc()
@@ -96,11 +96,6 @@ def test_a_body_that_reaches_a_corner_ends_the_run() -> None:
 
 
 # Skates and slots
-
-
-def test_a_skate_on_a_moving_body_by_rows_and_by_a_tendon() -> None:
-    rows, tendon = (engine.build(blade_on_a_board(), 1e-3)(10, 50) for engine in (EXTENDED, TUNED))
-    assert 1e-6 < np.abs(tendon.pose - rows.pose).max() < 1e-2
 
 
 @pytest.mark.parametrize(("mass", "length"), [(1.0, 1.0), (1e5, 1.0), (1.0, 1e-3)])

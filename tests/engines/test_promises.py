@@ -12,7 +12,7 @@ from engines.lagrange import TRUTH, Lagrange
 from engines.motions import is_prescribed, starts_at_rest, turns_steadily
 from engines.mujoco import methods as of_mujoco
 from engines.pymunk import methods as of_pymunk
-from reference.forces import Torque
+from reference.forces import Torque, TorsionDamper
 from reference.joints import Drive, Joint, Pin, Skate, Slot
 from reference.mechanism import Body, Mechanism
 from reference.scenes.pendulum.link import BarPendulum
@@ -40,6 +40,12 @@ def slot_off_the_centre() -> Mechanism:
     return replace(SLIDER, joints=tuple(moved))
 
 
+def blade_at_the_centre() -> Mechanism:
+    (body,), (skate,) = SKATE.bodies, SKATE.joints
+    turning = replace(body, twist=(0.0, 0.0, 1.0))
+    return replace(SKATE, bodies=(turning,), joints=(replace(skate, second_point=(0.0, 0.0)),))
+
+
 MECHANISMS = {
     "from rest": FREE,
     "moving": four_bar(crank_rate=2.0),
@@ -52,6 +58,8 @@ MECHANISMS = {
     "gears": EllipticGears().mechanism(),
     "slider": SLIDER,
     "slot off the centre": slot_off_the_centre(),
+    "damped": replace(FREE, forces=(TorsionDamper("damper", None, "rocker", 0.1),)),
+    "blade at the centre": blade_at_the_centre(),
 }
 LAGRANGE = (
     *(Lagrange("euler", "projection"), Lagrange("rk4", "projection"), Lagrange("rk4", "none"), TRUTH),
@@ -59,10 +67,9 @@ LAGRANGE = (
 )
 ENGINES: tuple[Engine, ...] = (
     *(pymunk.DEFAULT, pymunk.TUNED, pymunk.LEAPFROG, pymunk.EXTENDED, of_pymunk.SKATE_PROJECTED),
-    replace(pymunk.DEFAULT, variant="groove", slot="groove"),
     *mujoco.VARIANTS,
     *(engine for engine in mujoco.METHODS if engine.variant in ("stiff Euler", "extended, free coordinates")),
-    *(*of_mujoco.SKATES, *of_mujoco.ROLLS, *of_mujoco.DRIVES),
+    *(*of_mujoco.SKATES, *of_mujoco.ROLLS),
     *LAGRANGE,
     Extrapolated(of_pymunk.SKATE_PROJECTED, "twice", (2, 4), (1,)),
     Extrapolated(pymunk.TUNED, "of powers that the error has not", (1, 2, 3), (2, 3)),

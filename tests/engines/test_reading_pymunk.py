@@ -130,7 +130,9 @@ def off_centre(space, first, second):
 
 MAKERS = {
     make.__name__: make
-    for make in [elbow, rod, geared, held_by_a_gear, driven, spring, damper, torsion, kinematic, steady, off_centre]
+    for make in (
+        *(elbow, rod, grooved, geared, held_by_a_gear, driven, spring, damper, torsion, kinematic, steady, off_centre),
+    )
 }
 
 
@@ -142,12 +144,6 @@ def test_a_constraint_is_read_as_elements_with_the_same_accelerations(name):
     wrong = replace(reading, mechanism=replace(reading.mechanism, gravity=(0.3, -5.0), forces=()))
     with pytest.raises(Unsupported, match="differ from those of the ideal mechanism"):
         refuse_disagreement(wrong)
-
-
-def test_a_groove_through_a_centre_of_mass_is_a_slot():
-    reading = read(space_of(grooved, spin=0.0), 0.01)
-    assert refuse_disagreement(reading) < ACCELERATION_ERROR
-    assert reading.mechanism.joints[-1].size == 1
 
 
 def test_a_groove_beside_the_centre_of_mass_is_named_as_not_ideal():

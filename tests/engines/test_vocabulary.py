@@ -10,7 +10,6 @@ import pytest
 
 import reference.mechanism
 from engines import Unsupported, method_name, registry
-from engines.capability import Capability
 from engines.conformance.same import Isometry, joints_swapped
 from engines.lagrange import TRUTH
 from engines.mujoco.writers import MJCF, URDF
@@ -158,9 +157,3 @@ def test_a_table_of_constructions_has_known_classes_and_no_reason_against_them(c
     assert {*capability.joints} <= {*JOINTS}
     assert {*(capability.forces or ())} <= {*FORCES}
     assert {*capability.lacks} <= {*JOINTS, *FORCES} - {*capability.joints} - {*(capability.forces or ())}
-
-
-def test_a_table_names_an_element_without_a_reason():
-    refusal = Capability("toy", (), ()).refusal(Mechanism((WHEEL,), (AXLE,), (0.0, 0.0)))
-    assert refusal is not None
-    assert (refusal.kind, refusal.lacking) == ("Pin", "toy has no construction for a Pin here")

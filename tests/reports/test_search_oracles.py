@@ -26,7 +26,6 @@ from engines.pymunk import LEAPFROG
 from engines.pymunk import TUNED as PYMUNK_TUNED
 from engines.pymunk import declared as pymunk_declared
 from engines.pymunk import model as pymunk_model
-from engines.pymunk.declared import GROOVE_LAW
 from engines.registry import INSTALLED, VARIANTS
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
@@ -224,13 +223,6 @@ def test_a_change_of_mujocos_model_is_found_among_noise(
 
     monkeypatch.setattr(mujoco_engine, "build_model", built)
     assert check in subject.ask(case, number, (oracle,)).faults
-
-
-def test_a_groove_off_the_centre_of_mass_fails_and_obeys_the_law_on_the_page_of_faults():
-    cases = [plan.GROOVE_SUBJECT.draw(SEED, number, ("pin", "slot"), 0) for number in range(9)]
-    result = [plan.GROOVE_SUBJECT.ask(case, 0, ("instant",)).errors for case in cases if "slot" in case.kinds]
-    assert sum(errors["velocity"][0] > 1e-3 for errors in result) >= 5
-    assert max(errors[GROOVE_LAW][0] for errors in result) < 1e-10
 
 
 @dataclass(frozen=True)

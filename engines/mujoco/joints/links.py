@@ -10,14 +10,9 @@ An equality keeps this length constant, without a velocity term because the fact
   v, so a gap of its spring supplies this force.
 - "rows": a row for the rod that a callback writes in every stage.
 
-`DriveBy` is the construction of a drive whose rotation is a tree coordinate.
-
-- "inertia": the armature is so large that no force can accelerate the coordinate.
-- "overwrite": our code overwrites position and velocity after every step (`engines.mujoco.running`). MuJoCo's solver
-  does not know this motion, so the forces in a loop are wrong.
-
-If the rotation is a sum of several coordinates, a fixed tendon is the difference between this sum and the angle of a
-clock. The clock is an auxiliary wheel with the prescribed rate and a large armature. An equality keeps the length of
+If the rotation of a drive is a tree coordinate, the armature of the coordinate is so large that no force can accelerate
+it. If the rotation is a sum of several coordinates, a fixed tendon is the difference between this sum and the angle of
+a clock. The clock is an auxiliary wheel with the prescribed rate and a large armature. An equality keeps the length of
 the tendon constant, so the drive is as soft as a loop.
 
 If a slot keeps the centre of mass of a free body on a line of the ground, the slot is an equality of a fixed tendon.
@@ -45,7 +40,6 @@ from reference.mechanism import Mechanism
 from reference.plane import rotation_velocity
 
 RodBy = Literal["tendon", "rows"]
-DriveBy = Literal["inertia", "overwrite"]
 
 
 def add_pins(builder: ModelBuilder, pins: Sequence[Pin | Weld]) -> None:
@@ -96,19 +90,16 @@ def add_drives(builder: ModelBuilder, drives: Sequence[Drive]) -> None:
         if column in [other.column for other in builder.driven]:
             raise Unsupported(f"drive {drive.name!r} turns a joint that another drive turns already")
         builder.driven.append(DrivenCoordinate(column, sign * drive.turning_rate))
-        if builder.settings.drive == "inertia":
-            builder.spec.joint(f"coordinate {column}").armature = _driving_inertia(builder)
+        builder.spec.joint(f"coordinate {column}").armature = _driving_inertia(builder)
 
 
 def _add_geared_drive(builder: ModelBuilder, drive: Drive, factors: Mapping[int, float]) -> None:
     """Keep the difference between a sum of coordinates and the angle of a clock constant. Raises Unsupported."""
-    by = builder.settings.drive
-    if by != "inertia" or not factors:
+    if not factors:
         first, second = (repr(name) if name else "the ground" for name in (drive.first, drive.second))
-        rotation = "a sum of coordinates" if factors else "no coordinate"
         raise Unsupported(
-            f"drive {drive.name!r}: the rotation of {second} against {first} is {rotation} of MuJoCo's tree here; "
-            + (f"{by!r} drives single ones, take 'inertia'" if factors else "nothing can drive it")
+            f"drive {drive.name!r}: the rotation of {second} against {first} is no coordinate of MuJoCo's tree here; "
+            "nothing can drive it"
         )
     name = f"drive {drive.name}"
     tendon = builder.add_fixed_tendon(name, factors)

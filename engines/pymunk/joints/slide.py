@@ -1,14 +1,11 @@
 """Constructions of a Slot and a Skate in pymunk, by groove joints, by pin joints, or by corrected velocities.
 
-`SlotConstruction` is the construction of a slot.
-
-- "groove": a `GrooveJoint`, as a user would build it. Chipmunk solves for the impulse in both directions and keeps the
-  normal component (applyImpulse and grooveConstrain in cpGrooveJoint.c). This impulse is correct only if the normal is
-  an eigenvector of the 2 by 2 inverse mass matrix of both bodies at the anchor. Otherwise motion across the groove
-  remains at any step.
-- "exact": a `GrooveJoint` if its impulse is always correct, and otherwise a `MovedPinJoint`. The impulse is always
-  correct if two conditions are satisfied. The motion of the first body is prescribed. The anchor is the centre of mass
-  of the second body, or impulses cannot turn the second body.
+A slot is a `GrooveJoint` if its impulse is always correct, and otherwise a `MovedPinJoint`. Chipmunk solves for the
+impulse of a groove in both directions and keeps the normal component (applyImpulse and grooveConstrain in
+cpGrooveJoint.c). This impulse is correct only if the normal is an eigenvector of the 2 by 2 inverse mass matrix of both
+bodies at the anchor. Otherwise motion across the groove remains at any step. The impulse is always correct if two
+conditions are satisfied. The motion of the first body is prescribed. The anchor is the centre of mass of the second
+body, or impulses cannot turn the second body.
 
 `SkateConstruction` is the construction of a skate. A blade constrains the same motion at every point of its axle. All
 constructions move the blade to the foot of the perpendicular from the centre of mass, where the impulse of a groove is
@@ -41,7 +38,6 @@ from pymunk.constraints import Constraint, GrooveJoint, PinJoint
 from engines import Unsupported
 from reference.joints import Skate, Slot, Vector
 
-SlotConstruction = Literal["exact", "groove"]
 SkateConstruction = Literal["centre", "point", "projection", "groove"]
 BeforeStep = Callable[[float], None]  # the argument is the duration of the next drift [units of time]
 AfterStep = Callable[[], None]
@@ -55,7 +51,6 @@ LINK_LENGTH = 10.0
 
 def build_slot(
     joint: Slot,
-    construction: SlotConstruction,
     first: pymunk.Body,
     second: pymunk.Body,
     first_point: Vector,
@@ -67,7 +62,7 @@ def build_slot(
     Both points [m] are relative to the origins of the pymunk bodies. `length` [m]: length scale of the mechanism.
     """
     is_prescribed = first.body_type != pymunk.Body.DYNAMIC
-    if construction == "groove" or (is_prescribed and groove_is_exact(second_point, turns=not isinf(second.moment))):
+    if is_prescribed and groove_is_exact(second_point, turns=not isinf(second.moment)):
         cosine, sine, half_length = cos(joint.line_angle), sin(joint.line_angle), GROOVE_HALF_LENGTH * length
         x, y = first.world_to_local(second.local_to_world(second_point))
         # The middle of the groove is at the second body, which may be far from the first.

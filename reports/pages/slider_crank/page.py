@@ -10,7 +10,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engines import pymunk
 from engines.lagrange import Lagrange
 from engines.mujoco.methods import SLOTS
 from engines.registry import VARIANTS
@@ -50,17 +49,6 @@ class Leaving(Task):
         return {"when": np.asarray(t[int(np.argmax(has_left))] if has_left.any() else np.nan)}
 
 
-GROOVES, LEVERS = (
-    cells(
-        scene,
-        [
-            replace(engine, variant=f"{engine.variant}, GrooveJoint {place}", slot="groove")
-            for engine in (pymunk.DEFAULT, pymunk.TUNED)
-        ],
-        (1, 10, 100),
-    )
-    for scene, place in ((RodEndInSlot(), "at the rod's end"), (SlottedLever(), "in the lever"))
-)
 LEAVING = tuple(map(Leaving, (1e-2, 1e-4, 1e-6)))
 
 
@@ -113,10 +101,8 @@ PAGE = scene_page(
     engines=VARIANTS,
     failures=described(
         __file__,
-        Failure("The rod's end in a groove", cells=GROOVES + cells(RodEndInSlot(), MAIN_METHODS, (1, 10, 100))),
-        Failure(
-            "A groove in a moving lever", cells=LEVERS + cells(SlottedLever(), (*MAIN_METHODS, *SLOTS), (1, 10, 100))
-        ),
+        Failure("The rod's end in a groove", cells=cells(RodEndInSlot(), MAIN_METHODS, (1, 10, 100))),
+        Failure("A groove in a moving lever", cells=cells(SlottedLever(), (*MAIN_METHODS, *SLOTS), (1, 10, 100))),
         Failure(
             "A slider that has to start the crank, next to its dead centre",
             cells=cells(SliderAtDeadCentre(), (*MAIN_METHODS, Lagrange("rk4", "projection")), (1, 10)),

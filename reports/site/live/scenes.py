@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from engines import Engine, pymunk
 from engines.pymunk.joints.roll import ContactSettings
-from engines.pymunk.methods import ROLL_FACETED, SKATE_CENTRE, SKATE_PROJECTED
+from engines.pymunk.methods import ROLL_POLYGON, SKATE_CENTRE, SKATE_PROJECTED
 from reference.scene import Scene
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.pendulum.link import BarPendulum
@@ -159,7 +159,7 @@ CORNERS = (
     (SHIPPED, pymunk.DEFAULT),
     (DOCUMENTED, pymunk.TUNED),
     ("a polygon of 8 corners", replace(pymunk.DEFAULT, contact=ContactSettings(vertices=8))),
-    ("a polygon of 512 corners", ROLL_FACETED[-1]),
+    ("a polygon of 512 corners", ROLL_POLYGON),
 )
 CAM = Live(
     "a cam",
