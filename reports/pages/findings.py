@@ -24,7 +24,7 @@ from reports.model.quantities import quantity
 from reports.model.tasks import Answer, Task
 from reports.pages.faults.page import OFFSETS, SCRIPTS, is_right
 from reports.plots.looks import colour
-from reports.plots.theme import LIGHT, drawing, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, label_decades, style_axes, svg
 from reports.versions.table import ACCELERATION, COST_ROSE_IN, Entry, relative_cost, released, wrong_trees
 from reports.write.page_tables import COMPARED_STEP, advice
 from reports.write.rows import Rows, rows_of_pages
@@ -69,8 +69,6 @@ def of_releases(label: str, entries: Iterable[Entry]) -> PlottedLine:
 
 def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
     """A chart with logarithmic axes; releases are equally spaced. Raises ValueError for more than four lines."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
     if len(lines) > len(LINE_STYLES):
         raise ValueError(f"a finding's picture has {len(lines)} lines; it must have at most {len(LINE_STYLES)}")
     with drawing(PICTURE_HEIGHT, width=PICTURE_WIDTH) as figure:
@@ -92,11 +90,8 @@ def draw(lines: Sequence[PlottedLine], x: str, y: str) -> Figure:
             axes.tick_params(axis="x", labelrotation=60, labelsize=7)
         else:
             axes.set_xscale("log")
-            axes.xaxis.set_major_locator(LogLocator(base=10, numticks=7))
-            axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.yaxis.set_major_locator(LogLocator(base=10, numticks=7))
-        axes.yaxis.set_minor_formatter(NullFormatter())
+            label_decades(axes.xaxis, 7, label="{:g}".format)
+        label_decades(axes.yaxis, 7)
         axes.minorticks_off()
         figure.legend(loc="outside upper left", ncols=1, handlelength=3.2, fontsize=8.5)
     return figure

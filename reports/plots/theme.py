@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 FIGURE_WIDTH = 9.2  # inches; GitHub does not scale pictures of this width
@@ -131,6 +132,22 @@ def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:
     if grid:
         axes.grid(True, which="major", color=theme.grid, linewidth=0.7)
     axes.set_axisbelow(True)
+
+
+def label_decades(
+    axis: Axis,
+    count: int | None = None,
+    ticks: Sequence[float] = (1.0,),
+    label: Callable[[float], str] | None = None,
+) -> None:
+    """Place labels of a logarithmic axis only at `ticks` times powers of ten, at most `count` of them. label: value ->
+    text."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(10, ticks, numticks=count))
+    if label is not None:
+        axis.set_major_formatter(FuncFormatter(lambda value, _: label(value)))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def bare(panel: Axes, title: str) -> None:

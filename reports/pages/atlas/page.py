@@ -17,7 +17,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page
 from reports.pages.atlas.maps import FILE, MAPS, StabilityMap, StoredColumn, read
 from reports.plots.looks import SHADE_NAMES, outcome_colour, shade
-from reports.plots.theme import LIGHT, drawing, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, label_decades, style_axes, svg
 from reports.write.columns import displayed_variant
 from reports.write.tables import DASH, markdown, number, step_words
 
@@ -159,7 +159,7 @@ def atlas_map(stability_map: StabilityMap, columns: Sequence[StoredColumn]) -> F
 
 
 def _prepare(panel: Axes, method: str, columns: Sequence[StoredColumn], whole: bool) -> None:
-    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+    from matplotlib.ticker import MaxNLocator
 
     style_axes(panel, grid=False)
     panel.set_title(fill(method, 30), loc="left", fontweight="bold", color=LIGHT.ink)
@@ -170,9 +170,7 @@ def _prepare(panel: Axes, method: str, columns: Sequence[StoredColumn], whole: b
         panel.set_xscale("log")
     decades = math.log10(columns[0].steps[0] / columns[0].steps[-1])
     ticks = (1.0,) if decades > MAX_DECADES_FOR_FINE_TICKS else (1.0, 2.0, 5.0)
-    panel.yaxis.set_major_locator(LogLocator(10, ticks))
-    panel.yaxis.set_major_formatter(FuncFormatter(lambda step, _: number(1e3 * step)))
-    panel.yaxis.set_minor_formatter(NullFormatter())
+    label_decades(panel.yaxis, None, ticks, lambda step: number(1e3 * step))
 
 
 def _legend_entries(

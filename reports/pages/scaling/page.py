@@ -23,7 +23,7 @@ from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.pages.pendulum import page as pendulum
 from reports.plots.looks import look
-from reports.plots.theme import LIGHT, drawing, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, label_decades, style_axes, svg
 from reports.write.tables import DASH, markdown, number
 from reports.write.unmeasured import UNMEASURED
 
@@ -107,7 +107,6 @@ FURTHER_MARKS = ("X", "v")
 def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
     """A panel with the CPU time of a step [µs], and a panel with the largest angle error [rad] of full runs."""
     from matplotlib.lines import Line2D
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
     variants: dict[str, list[str]] = {}
     for series in all_series:
@@ -133,11 +132,8 @@ def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
                 if pairs := [(n, value) for n, value in points if math.isfinite(value) and value > 0]:
                     panel.plot(*zip(*pairs, strict=True), zorder=3, **looks[series.method])
         for panel in (cost, error):
-            panel.xaxis.set_major_locator(LogLocator(base=10, subs=(1, 2, 5), numticks=30))
-            panel.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}" if round(n) in TICKS else ""))
-            panel.xaxis.set_minor_locator(NullLocator())
-            panel.yaxis.set_major_locator(LogLocator(base=10, numticks=16))
-            panel.yaxis.set_minor_formatter(NullFormatter())
+            label_decades(panel.xaxis, 30, (1, 2, 5), lambda n: f"{n:g}" if round(n) in TICKS else "")
+            label_decades(panel.yaxis, 16)
             panel.minorticks_off()
         handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in all_series]
         figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=3.2)

@@ -24,7 +24,7 @@ from reports.pages.speed.table import (
     read,
 )
 from reports.plots.looks import colour, mark
-from reports.plots.theme import LIGHT, drawing, style_axes, svg
+from reports.plots.theme import LIGHT, drawing, label_decades, style_axes, svg
 from reports.write.tables import markdown, number
 
 if TYPE_CHECKING:
@@ -165,8 +165,6 @@ def ratio_chart(table: SpeedTable) -> Figure:
 
 
 def _draw(panel: Axes, table: SpeedTable, target: float) -> None:
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
     style_axes(panel)
     panel.set_title(f"error at most {target:.0e} rad", loc="left", fontweight="bold")
     panel.set_xscale("log")
@@ -185,9 +183,7 @@ def _draw(panel: Axes, table: SpeedTable, target: float) -> None:
                 panel.plot([row.ratio, 2.2 * row.ratio], [height] * 2, color=look["color"], linewidth=0.9)
                 panel.plot([2.2 * row.ratio], [height], marker=">", markersize=3.5, color=look["color"])
             panel.plot([row.ratio], [height], linestyle="", markersize=5, zorder=3, **look)
-    panel.xaxis.set_major_locator(LogLocator(base=10, numticks=12))
-    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    panel.xaxis.set_minor_formatter(NullFormatter())
+    label_decades(panel.xaxis, 12, label="{:g}".format)
     for edge in range(len(table.scenes) - 1):
         panel.axhline(edge + 0.5, color=LIGHT.grid, linewidth=0.7)
     panel.grid(False, axis="y")
