@@ -13,6 +13,7 @@ import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from functools import cache
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -67,13 +68,7 @@ Rows = Mapping[Cell, Measurement]
 def some(rows: Rows, chance: random.Random) -> Rows:
     """A random selection of the rows; some rows are replaced by failures, and some numbers by NaN."""
     remaining = dict(rows)
-    for of in (
-        lambda cell: cell.engine.name,
-        lambda cell: cell.engine.variant,
-        lambda cell: cell.scene.name,
-        lambda cell: cell.every,
-        lambda cell: cell.purpose,
-    ):
+    for of in map(attrgetter, ("engine.name", "engine.variant", "scene.name", "every", "purpose")):
         if remaining and chance.random() < 0.3:
             gone = of(chance.choice(list(remaining)))
             remaining = {cell: row for cell, row in remaining.items() if of(cell) != gone}
