@@ -16,7 +16,7 @@ from reports.cli import bench as command
 from reports.model.ending import BadInput
 from reports.model.page import Material
 from reports.pages.rendering import render_page
-from reports.pages.speed.page import NO_REASON, PAGE, page_of, spread
+from reports.pages.speed.page import NO_REASON, PAGE, page_of, reason_of, spread
 from reports.pages.speed.table import (
     ABSENT,
     FILE,
@@ -200,6 +200,18 @@ def test_a_stored_table_is_read_as_it_was_and_another_file_is_refused(tmp_path):
         (tmp_path / FILE).write_bytes(content)
         with pytest.raises(BadInput, match=r"speed\.csv: "):
             read(tmp_path / FILE)
+
+
+def test_a_reason_belongs_to_its_engine_scene_and_target():
+    texts = [
+        reason_of(SpeedRow(scene, engine, target, REACHED))
+        for scene, engine, target in (
+            *(("sleigh", "mujoco", 1e-3), ("rolling-ellipse", "mujoco", 1e-3), ("four-bar", "mujoco", 1e-3)),
+            *(("sleigh", "mujoco", 1e-6), ("sleigh", "pinocchio", 1e-6)),
+        )
+    ]
+    assert texts[3:] == [NO_REASON, NO_REASON]
+    assert len({NO_REASON, *texts}) == 4
 
 
 def test_new_rows_replace_those_of_their_scene_and_engine_and_rows_of_another_machine_are_not_kept():
