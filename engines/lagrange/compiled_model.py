@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from engines import Regularisation
 from engines.lagrange.dynamics import PROJECTION_ITERATIONS
 from engines.lagrange.loading import compiled
-from engines.lagrange.methods import ADAPTIVE_DOP853, Tableau
+from engines.lagrange.methods import ADAPTIVE_DOP853, NO_STAGES, Tableau
 from engines.lagrange.records import (
     CELL_SIZE,
     NO_RESULTS,
@@ -133,7 +133,7 @@ class CompiledModel:
     windows: CellWindows
 
     def __post_init__(self) -> None:
-        self._storage_block = block_of(self.storage)
+        self._storage_block, self._tableau, self._tableau_block = block_of(self.storage), NO_STAGES, block_of(NO_STAGES)
         self._set_cells()
 
     def _set_cells(self) -> None:
@@ -233,12 +233,14 @@ class CompiledModel:
         self, task: Task, tableau: Tableau, samples: Samples, begin: int, iterations: int, every: int, *reals: float
     ) -> int:
         """Run a task; after each move of a window, run it again from the last completed sample."""
-        run, status, blocks = compiled(), self.system.status, (block_of(tableau), block_of(samples))
+        if tableau is not self._tableau:
+            self._tableau, self._tableau_block = tableau, block_of(tableau)
+        run, status, states = compiled(), self.system.status, block_of(samples)
         done, moves = begin, 0
         while True:
             status["missing_roll"] = -1
-            settings = done, iterations, every, *reals
-            begin, done = done, run(task, self._system_block, self._storage_block, *blocks, *settings)
+            blocks = self._system_block, self._storage_block, self._tableau_block, states
+            begin, done = done, run(task, *blocks, done, iterations, every, *reals)
             moves = moves + 1 if done == begin else 0
             roll = int(status["missing_roll"])
             if roll < 0 or moves > MOST_MOVES or not self.windows.move(roll, float(status["missing_angle"])):

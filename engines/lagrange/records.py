@@ -158,10 +158,11 @@ def block_of(arrays: Iterable[Any]) -> ctypes.Array[ctypes.c_int64]:
     """The addresses and shapes of contiguous arrays, for compiled functions. The caller must keep the arrays."""
     words = list[int]()
     for array in arrays:
-        interface = array.__array_interface__
-        if interface["strides"] is not None:
-            raise ValueError("an array for compiled code is not contiguous; copy the array")
-        words += (interface["data"][0], *interface["shape"])
+        if array.ndim == 0:  # a record
+            address = array.__array_interface__["data"][0]
+        else:  # ValueError if the array is not contiguous
+            address = ctypes.addressof(ctypes.c_char.from_buffer(array)) if array.size else 0
+        words += (address, *array.shape)
     return (ctypes.c_int64 * len(words))(*words)
 
 
