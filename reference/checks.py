@@ -21,7 +21,7 @@ from typing import Annotated, Any, ClassVar, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.validators import COMPLEX, INVALID, NOT_FINITE, Floats, Rule, Validator, from_to, validator_of
+from reference.validators import COMPLEX, INVALID, NOT_FINITE, Array, Rule, Validator, from_to, validator_of
 
 # Maximum number of characters of a value in a message.
 MAX_CHARACTERS = 80
@@ -36,7 +36,7 @@ Count = Annotated[int, from_to(1, LARGEST_COUNT)]
 Sign = Annotated[int, Rule(lambda value: value in (1, -1), "that is 1 or -1")]
 Signs = Annotated[ArrayLike, Rule(lambda value: np.all(np.abs(value) == 1), "each 1 or -1")]
 Name = Annotated[str, Rule(lambda value: value.strip() and value.isprintable(), "that is not empty and can be printed")]
-Numbers = Annotated[Floats, NOT_FINITE]  # Unknown values are NaN.
+Numbers = Annotated[Array, NOT_FINITE]  # Unknown values are NaN.
 Complexes = Annotated[Any, COMPLEX]  # Array arguments of functions that are differentiated by a complex step.
 AnyComplexes = Annotated[Complexes, NOT_FINITE]
 Times = Annotated[
@@ -145,7 +145,7 @@ def index_of(owner: str, name: str, value: int, count: int) -> int:
     return validate(owner, name, value, Annotated[int, from_to(0, count - 1)])
 
 
-def sample_times(owner: str, t: ArrayLike) -> Floats:
+def sample_times(owner: str, t: ArrayLike) -> Array:
     """Return times [s] as an array (times,); raise InvalidMechanism unless all are finite and not negative."""
     return np.atleast_1d(np.asarray(validate(owner, "t", t, Times), dtype=float))
 

@@ -7,16 +7,14 @@ rows. A `Coupling` keeps such a sum constant, and a `forces.CoupledForce` acts a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, Name, Valid
 from reference.elements import Element, JointElement, Pair
-from reference.plane import apart, direction_row
-
-AnyArray = NDArray[Any]
+from reference.plane import AnyArray, apart, direction_row
 
 
 @dataclass(frozen=True)

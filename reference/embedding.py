@@ -22,8 +22,7 @@ from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import units_of_motion
 from reference.plane import COMPLEX_STEP
 from reference.scene import PlacedScene, shared
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 
 class EmbeddedScene(PlacedScene):

@@ -12,18 +12,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, get_args
+from typing import ClassVar, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference.checks import Name, NonNegative, Positive
 from reference.couplings import OfTerms
 from reference.elements import BetweenTwo, Element, Pair, Place, UnitExponents, Vector
 from reference.joints import Body
-from reference.plane import apart, distance, from_body, length_of, point_rows
+from reference.plane import AnyArray, apart, distance, from_body, length_of, point_rows
 
-AnyArray = NDArray[Any]
 Bodies = Mapping[str, Body]
 
 # Relative extension of a spring up to which the extension counts as a rounding error.

@@ -22,18 +22,17 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import Name, Positive, Valid
 from reference.couplings import Coupling
 from reference.elements import BetweenTwo, JointElement, Place, UnitExponents, Vector
-from reference.plane import apart, direction_row, distance, point_rows
+from reference.plane import AnyArray, apart, direction_row, distance, point_rows
 from reference.rolling.roll import Roll
 from reference.validators import Rule
 
 Triple = tuple[float, float, float]
 Ratio = Annotated[float, Rule(lambda value: value != 0, "other than zero")]
-AnyArray = NDArray[Any]
 
 # A point is on a slot's line if its distance from the line is at most this fraction of a spring's span. The fraction is
 # far above rounding errors and far below mistakes in the input.
@@ -79,10 +78,10 @@ class Pin(_JointOfTwo):
     first_point: Vector
     second_point: Vector
 
-    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         return apart(first, second, self.first_point, self.second_point)
 
-    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         return point_rows(first, second, self.first_point, self.second_point)
 
 
@@ -109,14 +108,14 @@ class Drive(_JointOfTwo):
     def rate(self) -> tuple[float, ...]:
         return (self.turning_rate,)
 
-    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         """Relative angle minus the prescribed angle (..., 1) [rad] at times t [s], which broadcast against the
         poses.
         """
         prescribed = np.asarray(self.offset) + np.asarray(self.turning_rate) * np.asarray(t)
         return (second[..., 2] - first[..., 2] - prescribed)[..., None]
 
-    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
         rows[..., 0, 2] = -1
         rows[..., 0, 5] = 1
@@ -154,13 +153,13 @@ class Slot(_JointOfTwo):
                 return True
         return False
 
-    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         """Distance of the second point from the line, positive to its left (..., 1) [m]."""
         line = first[..., 2] + np.asarray(self.line_angle)
         across_x, across_y = np.moveaxis(apart(first, second, self.first_point, self.second_point), -1, 0)
         return (np.cos(line) * across_y - np.sin(line) * across_x)[..., None]
 
-    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         line = first[..., 2] + np.asarray(self.line_angle)
         return direction_row(first, second, self.second_point, -np.sin(line), np.cos(line))
 
@@ -180,11 +179,11 @@ class Skate(_JointOfTwo):
     second_point: Vector
     angle: float = 0.0
 
-    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         """NaN (..., 1), since the constraint is not a function of the pose (18.65)."""
         return np.full((*np.broadcast_shapes(first.shape[:-1], second.shape[:-1]), 1), np.nan)
 
-    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         heading = second[..., 2] + np.asarray(self.angle)
         return direction_row(first, second, self.second_point, -np.sin(heading), np.cos(heading))
 
@@ -208,11 +207,11 @@ class Rod(_JointOfTwo):
     def lengths(self) -> tuple[float, ...]:
         return (self.length,)
 
-    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         length, _ = distance(first, second, self.first_point, self.second_point)
         return (length - np.asarray(self.length))[..., None]
 
-    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         return distance(first, second, self.first_point, self.second_point)[1][..., None, :]
 
 
@@ -235,10 +234,10 @@ class Gear(_JointOfTwo):
     def is_angular(self) -> tuple[bool, ...]:
         return (True,)
 
-    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         return (second[..., 2] - np.asarray(self.ratio) * first[..., 2] - np.asarray(self.phase))[..., None]
 
-    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
         rows[..., 0, 2] = -np.asarray(self.ratio)
         rows[..., 0, 5] = 1
@@ -265,12 +264,12 @@ class Weld(_JointOfTwo):
     def is_angular(self) -> tuple[bool, ...]:
         return (False, False, True)
 
-    def gap(self, first: NDArray[Any], second: NDArray[Any], t: ArrayLike) -> NDArray[Any]:
+    def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         angle_error = second[..., 2] - first[..., 2] - np.asarray(self.angle)
         vector = apart(first, second, self.first_point, self.second_point)
         return np.concatenate([vector, angle_error[..., None]], axis=-1)
 
-    def rows(self, first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
+    def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
         points = point_rows(first, second, self.first_point, self.second_point)
         rows = np.zeros((*points.shape[:-2], 3, 6), dtype=points.dtype)
         rows[..., :2, :] = points

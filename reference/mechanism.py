@@ -30,7 +30,7 @@ from reference.joints import Body, Joint, Vector
 from reference.plane import COMPLEX_STEP
 from reference.rows import MANY_ROWS, JointRows, banded_reaction, rank, reactions
 from reference.scales import length_scale, time_scale
-from reference.validators import Floats, of_shape
+from reference.validators import Array, of_shape
 
 States = Annotated[AnyComplexes, of_shape("...", "bodies", 3)]
 Reals = Annotated[Numbers, of_shape("...", "bodies", 3)]
@@ -111,22 +111,22 @@ class Mechanism(Valid):
         return sum(joint.size for joint in self.joints)
 
     @cached_readonly
-    def pose(self) -> NDArray[np.float64]:
+    def pose(self) -> Array:
         """Poses at t = 0 (bodies, 3) [m, m, rad]."""
         return np.array([body.pose for body in self.bodies], dtype=float)
 
     @cached_readonly
-    def twist(self) -> NDArray[np.float64]:
+    def twist(self) -> Array:
         """Twists at t = 0 (bodies, 3) [m/s, m/s, rad/s]."""
         return np.array([body.twist for body in self.bodies], dtype=float)
 
     @cached_readonly
-    def inertias(self) -> NDArray[np.float64]:
+    def inertias(self) -> Array:
         """The diagonal of the mass matrix (bodies, 3) [kg, kg, kg m^2]."""
         return np.array([(body.mass, body.mass, body.inertia) for body in self.bodies], dtype=float)
 
     @cached_readonly
-    def free_fall(self) -> NDArray[np.float64]:
+    def free_fall(self) -> Array:
         """Accelerations by gravity alone (bodies, 3) [m/s^2, m/s^2, rad/s^2]."""
         return np.array([(*self.gravity, 0.0)] * len(self.bodies), dtype=float)
 
@@ -135,7 +135,7 @@ class Mechanism(Valid):
         """The force elements, without checks of arguments, for use at every step."""
         return AppliedForces.of(self.forces, self._index)
 
-    def unconstrained(self, pose: NDArray[np.float64], twist: NDArray[np.float64]) -> NDArray[np.float64]:
+    def unconstrained(self, pose: Array, twist: Array) -> Array:
         """Accelerations (..., bodies, 3) by gravity and forces, without joints and without checks of arguments."""
         return self.free_fall + self.applied.on(pose, twist) / self.inertias if self.forces else self.free_fall
 
@@ -149,7 +149,7 @@ class Mechanism(Valid):
         return of_gravity + self.applied.potential(pose) if self.forces else of_gravity
 
     @cached_readonly
-    def rate(self) -> NDArray[np.float64]:
+    def rate(self) -> Array:
         """The right-hand side of J v = rate (rows,), which is zero except for drives."""
         return np.array([value for joint in self.joints for value in joint.rate], dtype=float)
 
@@ -184,7 +184,7 @@ class Mechanism(Valid):
         return self.joint_rows.velocities(pose, twist) - self.rate
 
     @validated
-    def bias(self, pose: Reals, twist: Reals) -> NDArray[np.float64]:
+    def bias(self, pose: Reals, twist: Reals) -> Array:
         """-(dJ/dt) v (..., rows): the right-hand side of J a = bias, exact by a complex step along the motion."""
         return -np.imag(self.joint_rows.velocities(pose + 1j * COMPLEX_STEP * twist, twist)) / COMPLEX_STEP
 
@@ -196,7 +196,7 @@ class Mechanism(Valid):
         inertias: Annotated[Numbers, of_shape("bodies", 3)] | None = None,
         gravity: Annotated[Numbers, of_shape(2)] | None = None,
         twist: Reals | None = None,
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """The joints' reactions (..., rows) [N, N m] from M a = f + J^T reaction with forces f without joints.
 
         pose, acceleration and twist are (..., bodies, 3); only dampers need the twist. By Newton's law an engine with
@@ -213,9 +213,7 @@ class Mechanism(Valid):
             falling = falling + self.applied.on(pose, np.broadcast_to(twist, np.shape(pose))) / inertias
         return self.reactions_of(pose, np.asarray(acceleration) - falling, inertias)
 
-    def reactions_of(
-        self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def reactions_of(self, pose: Array, excess: Array, inertias: Array) -> Array:
         """Reactions (..., rows) that cause an `excess` acceleration (..., bodies, 3) with inertias (bodies, 3)."""
         if self.row_count >= MANY_ROWS and np.ndim(pose) == np.ndim(excess) == 2:
             return self.reactions_of(pose[None], excess[None], inertias)[0]
@@ -227,15 +225,13 @@ class Mechanism(Valid):
             return out
         return self._dense_reaction(pose, excess, inertias)
 
-    def _dense_reaction(
-        self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _dense_reaction(self, pose: Array, excess: Array, inertias: Array) -> Array:
         size = np.where(self.is_angular, self.length_scale, 1.0)
         stacked = excess.reshape((*excess.shape[:-2], 3 * len(self.bodies)))
         return reactions(self.rows(pose), inertias.reshape(-1), stacked, size, self.length_scale)
 
     @validated
-    def degrees_of_freedom(self, pose: Annotated[Floats, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:
+    def degrees_of_freedom(self, pose: Annotated[Array, of_shape("bodies", 3)] | None = None) -> tuple[int, int]:
         """The numbers of configuration and velocity freedoms, from the rank of the rows at a pose or the start.
 
         A skate removes only a freedom of velocity; a drive removes a freedom of velocity and a freedom of configuration
@@ -247,7 +243,7 @@ class Mechanism(Valid):
     def _freedoms_at_start(self) -> tuple[int, int]:
         return self._freedoms(self.pose)
 
-    def _freedoms(self, pose: Floats) -> tuple[int, int]:
+    def _freedoms(self, pose: Array) -> tuple[int, int]:
         shape = (self.row_count, 3 * len(self.bodies))
         require_room("mechanism: the rank of rows", shape, largest=LARGEST_RANK)
         rows = self.rows(pose)
@@ -260,7 +256,7 @@ class Mechanism(Valid):
         return length_scale(self.bodies, self.joints, self.forces)
 
     @cached_readonly
-    def pose_unit(self) -> NDArray[np.float64]:
+    def pose_unit(self) -> Array:
         """The units (3,) [m, m, rad] of a pose are the length scale, the length scale and 1."""
         return np.array([self.length_scale, self.length_scale, 1.0])
 
@@ -269,7 +265,6 @@ class Mechanism(Valid):
         return time_scale(self.length_scale, self.gravity, self.bodies, self.joints, self.forces)
 
 
-Array = NDArray[np.float64]
 # Allowed violation of a row at the start, relative to the mechanism's length or speed. This tolerance is far above
 # rounding errors and far below mistakes in the input.
 START_TOLERANCE = 1e-9

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from reference.checks import InvalidMechanism, require_room
 from reference.couplings import Coupling
 from reference.joints import Joint
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 # Singular values below this fraction of the largest singular value count as zero. The value is far above rounding and
 # far below the singular values of regular mechanisms.

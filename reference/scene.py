@@ -31,7 +31,7 @@ from reference.checks import (
 )
 from reference.mechanism import Mechanism
 from reference.trajectory import Trajectory
-from reference.validators import INVALID, Floats, of_shape, validator_of
+from reference.validators import INVALID, Array, of_shape, validator_of
 
 # Approximate time between samples [s]. Every step of a sweep is a fraction of this time, so all steps have the same
 # sample times.
@@ -110,7 +110,7 @@ class Scene(Valid, ABC):
         return Trajectory(times, motion.pose[:0], motion.twist[:0], motion.reaction[:0])
 
     @abstractmethod
-    def _motion(self, times: Floats) -> Trajectory:
+    def _motion(self, times: Array) -> Trajectory:
         pass
 
     def _refuse_not_finite(self, motion: Trajectory) -> None:
@@ -127,7 +127,7 @@ class Scene(Valid, ABC):
             if not at_instants.all():
                 raise OverflowError(f"its {name} are not finite numbers at {motion.t[np.argmin(at_instants)]:.6g} s")
 
-    def times(self, t: ArrayLike) -> Floats:
+    def times(self, t: ArrayLike) -> Array:
         """Return times [s] as an array (times,); raise InvalidMechanism unless all are between 0 and `max_time`."""
         times = sample_times(self._owner(), t)
         if times.size and times.max() > self.max_time:
@@ -160,7 +160,7 @@ class Scene(Valid, ABC):
             raise InvalidMechanism(f"{self._owner()}: pose is of {actual} bodies; it must be of {bodies}")
         return self._branch_of(np.asarray(pose))
 
-    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Array) -> NDArray[np.int_]:
         return np.zeros(pose.shape[:-2], dtype=int)
 
     @property
@@ -182,14 +182,14 @@ class PlacedScene(Scene):
     """A scene that defines the motion of its bodies; the reactions follow from the accelerations by Newton's law."""
 
     @abstractmethod
-    def placement(self, times: Floats) -> tuple[Floats, Floats, Floats]:
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
         """Poses, twists and accelerations (times, bodies, 3) at checked times (times,) [s]."""
 
     @cached_property
     def _mechanism(self) -> Mechanism:
         return self.mechanism()
 
-    def _motion(self, times: Floats) -> Trajectory:
+    def _motion(self, times: Array) -> Trajectory:
         pose, twist, acceleration = self.placement(times)
         reaction = self._mechanism.reaction(pose, acceleration, twist=twist)
         if not np.isfinite(reaction).all():

@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference.checks import Numbers, Valid, validated
 from reference.mechanism import Mechanism
 from reference.plane import rotated
-from reference.validators import NOT_FINITE, of_shape
+from reference.validators import NOT_FINITE, Array, of_shape
 
-Array = NDArray[np.float64]
 # Number of rows in a notebook's table of a motion.
 TABLE_ROWS = 6
 # A warning about an adapter of this suite begins with this text. Stored rows contain only the text of warnings.

@@ -25,7 +25,7 @@ INVALID: Any = object()
 NOT_FINITE: Any = object()
 # With this mark in Annotated, numbers may be complex.
 COMPLEX: Any = object()
-Floats = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -133,12 +133,12 @@ _BY_TYPE = {
     str: Validator("a string", _text),
     NoneType: Validator("None", lambda value: None if value is None else INVALID),
     Any: Validator("anything", lambda value: value),
-    Floats: Validator("finite numbers", _finite_array),
+    Array: Validator("finite numbers", _finite_array),
     COMPLEX: Validator("finite numbers, real or complex", _analytic),
 }
 _UNBOUNDED = {
     float: Validator("a number", _number),
-    Floats: Validator("numbers", _array),
+    Array: Validator("numbers", _array),
     COMPLEX: Validator("numbers, real or complex", _any_analytic),
 }
 

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from engines.lagrange.records import System
 from engines.lagrange.system import FORCE_FIELDS, JOINT_FIELDS, Key
@@ -16,10 +15,9 @@ from reference.checks import InvalidMechanism, Valid
 from reference.forces import Force
 from reference.joints import Body
 from reference.mechanism import Mechanism
-from reference.validators import Floats, of_shape
+from reference.validators import Array, of_shape
 
-Array = NDArray[np.float64]
-States = Annotated[Floats, of_shape("mechanisms", "bodies", 3)]
+States = Annotated[Array, of_shape("mechanisms", "bodies", 3)]
 
 POINTS = {"first_point": ("first_x", "first_y"), "second_point": ("second_x", "second_y")}
 GRAVITY = "gravity"

@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference.checks import LARGEST_COUNT, InvalidMechanism, Numbers, Positive, Valid, index_of, validated
 from reference.plane import perpendicular, rotated
@@ -205,7 +204,7 @@ def _assembled(pose: Array, space: Array, body: Array) -> Centrodes:
     return Centrodes(pose, space, body, max(_halved(pose[:, 2], space), _halved(pose[:, 2], body)))
 
 
-def _halved(theta: Array, points: NDArray[np.float64]) -> float:
+def _halved(theta: Array, points: Array) -> float:
     """The largest distance [m] of left-out points from the curve through every second point, or NaN for few points."""
     if len(theta) < 2 * FEWEST:
         return math.nan

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference.checks import Positive, validated
 from reference.numerics.calculus import derivative
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scenes.pendulum.link import direction_of
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 
 @dataclass(frozen=True)

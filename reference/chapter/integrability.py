@@ -20,9 +20,8 @@ from reference.checks import InvalidMechanism, validated
 from reference.mechanism import Mechanism
 from reference.plane import COMPLEX_STEP
 from reference.rows import RANK_TOLERANCE
-from reference.validators import of_shape
+from reference.validators import Array, of_shape
 
-Array = NDArray[np.float64]
 Place = Annotated[Array, of_shape("coordinates")]
 Rows = Callable[[NDArray[Any]], NDArray[Any]]  # (..., coordinates) -> (..., rows, coordinates), analytic
 

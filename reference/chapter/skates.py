@@ -21,6 +21,7 @@ from reference.chapter.integrability import Place, exterior_derivatives
 from reference.checks import InvalidMechanism, Positive, Valid, validated
 from reference.joints import Skate, Triple
 from reference.numerics.calculus import derivative
+from reference.validators import Array
 
 BodyRow = tuple[float, float, float]  # (a, b, c) [1, 1, m]
 
@@ -81,9 +82,6 @@ def coriolis_factors(speed: float, rate: float, angular_acceleration: float = 0.
     skate = derivative(lambda t: speed * along(t), 0.0, radius=near)
     slider = derivative(lambda t: speed * t * along(t), 0.0, order=2, radius=near)
     return float(skate[1] / (speed * rate)), float(slider[1] / (speed * rate))
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

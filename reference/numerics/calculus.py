@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from reference.validators import Array
+
 # Number of points of a panel, which resolve one radian of an oscillation to rounding.
 PANEL_POINTS = 24
 # Number of the last coefficients of a panel's series that must be zero to rounding; otherwise the panel is halved.
@@ -29,7 +31,7 @@ _TO_COEFFICIENTS[0] /= 2
 _INTEGRATE = np.polynomial.chebyshev.chebint(np.eye(PANEL_POINTS), lbnd=-1)
 
 
-def _series_at(series: NDArray[Any], place: NDArray[np.float64]) -> NDArray[Any]:
+def _series_at(series: NDArray[Any], place: Array) -> NDArray[Any]:
     """The values (times,) of Chebyshev series (times, terms) at places (times,) by Clenshaw's recurrence."""
     later, latest = np.zeros_like(series[:, 0]), np.zeros_like(series[:, 0])
     for term in range(series.shape[1] - 1, 0, -1):
@@ -48,7 +50,7 @@ class Antiderivative:
     panel resolve f.
     """
 
-    def __init__(self, function: Callable[[NDArray[np.float64]], NDArray[Any]], panel: float) -> None:
+    def __init__(self, function: Callable[[Array], NDArray[Any]], panel: float) -> None:
         self._function = function
         self._panel = panel
         self._edges = np.zeros(1)
@@ -66,7 +68,7 @@ class Antiderivative:
         count = max(1, int(wanted))
         edges = np.linspace(self._edges[-1], self._edges[-1] + count * self._panel, count + 1)
         left, width = edges[:-1], np.full(count, self._panel)
-        rights: list[NDArray[np.float64]] = []
+        rights: list[Array] = []
         integrals: list[NDArray[Any]] = []
         scale = 0.0
         for halving in range(MOST_HALVINGS + 1):
@@ -111,7 +113,7 @@ class Antiderivative:
 CIRCLE_POINTS = 64
 
 
-def derivative(position: Callable[[Any], Any], t: float, order: int = 1, radius: float = 0.25) -> NDArray[np.float64]:
+def derivative(position: Callable[[Any], Any], t: float, order: int = 1, radius: float = 0.25) -> Array:
     """The derivative (...) of an analytic function at time t [s] from values on a circle of `radius` [s]."""
     circle = radius * np.exp(2j * math.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS)
     integrand = [np.asarray(position(t + z)) / z**order for z in circle]

@@ -24,8 +24,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.numerics import integration
 from reference.numerics.integration import COARSER, IntegrationFailed, Rates, hopeless
+from reference.validators import Array
 
-Array = NDArray[np.float64]
 Extended = NDArray[np.longdouble]
 Accelerations = Callable[[Extended, Extended], Extended]  # from angles and rates (..., n) to accelerations (..., n)
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism
+from reference.validators import Array
 
-Array = NDArray[np.float64]
 Rates = Callable[[Array], Array]  # states to rates
 
 # Relative error of a step, about the smallest one that double precision allows.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 # Newton's method takes fewer than ten iterations on these curves; bisection to rounding adds about sixty iterations.
 MAX_ITERATIONS = 200

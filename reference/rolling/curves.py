@@ -19,12 +19,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, Numbers, Positive, Valid, validate, validated
 from reference.plane import rotated
+from reference.validators import Array
 
-Array = NDArray[np.float64]
 Vector = tuple[float, float]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,9 +21,8 @@ from reference.mechanism import Mechanism
 from reference.numerics import gauss_collocation as gauss
 from reference.plane import from_complex
 from reference.scene import PlacedScene, shared
-from reference.validators import Floats
+from reference.validators import Array
 
-Array = NDArray[Any]
 Pair = tuple[Positive, float]
 Triple = tuple[Positive, float, float]
 Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positive]
@@ -225,7 +224,7 @@ class Andrews(PlacedScene):
         )
         return Mechanism(bodies, joints, (0.0, 0.0), forces)
 
-    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Array) -> NDArray[np.int_]:
         """1 if the joints of all three pairs of bars are on the same side as at the start (...,), else -1."""
         angle = pose[..., 2]
         folds = (

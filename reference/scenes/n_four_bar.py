@@ -21,9 +21,7 @@ from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.pendulum.link import Pendulum, direction_of
 from reference.trajectory import Trajectory
-from reference.validators import Floats
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 
 @dataclass(frozen=True)
@@ -136,7 +134,7 @@ class NFourBar(Scene):
             of_last_coupler = -(coupler[:, 0] - on_coupler)
         return out
 
-    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Array) -> NDArray[np.int_]:
         """+1 if every loop is a parallelogram, or -1 if a loop is folded with its coupler along a crank.
 
         In a folded loop one crank lies along the ground and the other crank along the coupler. The form whose angles

@@ -17,9 +17,7 @@ from reference.checks import Fraction, InvalidMechanism, Positive, Sign, Valid, 
 from reference.embedding import EmbeddedScene
 from reference.joints import Joint, Pin, bodies_of
 from reference.mechanism import Mechanism
-from reference.validators import Floats
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 SEGMENT_NAMES = ("left shank", "left thigh", "trunk", "right thigh", "right shank")
 UPRIGHT = (math.pi / 2, math.pi / 2, math.pi / 2, -math.pi / 2, -math.pi / 2)
@@ -228,7 +226,7 @@ class TwoFeet(OneFoot):
         hip = np.arccos((square + thigh**2 - shank**2) / (2 * thigh * reach))
         return bearing + self.knees * ankle, bearing - self.knees * hip
 
-    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Array) -> NDArray[np.int_]:
         """+1 if both knees bend to the left of their legs, -1 if both bend to the right, 0 otherwise."""
         left_knee = np.sign(np.sin(pose[..., 0, 2] - pose[..., 1, 2]))
         right_knee = np.sign(np.sin(pose[..., 4, 2] - pose[..., 3, 2]))

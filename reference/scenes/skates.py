@@ -23,9 +23,7 @@ from reference.plane import rotated, rotation_acceleration, rotation_velocity
 from reference.scene import Scene
 from reference.scenes.pendulum.link import Pendulum
 from reference.trajectory import Trajectory
-from reference.validators import Floats
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 
 def one_body(scene: Scene, mass: float, inertia: float, joint: Pin | Skate, gravity: Vector = (0.0, 0.0)) -> Mechanism:
@@ -263,7 +261,7 @@ class SkateOnSlope(Scene):
         blade = Skate("blade", None, "skate", (0.0, 0.0))
         return one_body(self, self.mass, self.inertia, blade, (0.0, -self.gravity))
 
-    def _motion(self, times: Floats) -> Trajectory:
+    def _motion(self, times: Array) -> Trajectory:
         t = times
         first, rate = self.heading, self.turning_rate
         angle, half = first + rate * t, 0.5 * rate * t
@@ -338,7 +336,7 @@ class HeldBySkates(Scene):
         )
         return Mechanism((Body("body", self.mass, self.inertia, self.pose),), joints, (0.0, -self.gravity))
 
-    def _motion(self, times: Floats) -> Trajectory:
+    def _motion(self, times: Array) -> Trajectory:
         pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(times), 1, 3)).copy()
         zero = np.zeros_like(pose)
         return Trajectory(times, pose, zero, self.mechanism().reaction(pose, zero))

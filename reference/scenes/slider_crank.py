@@ -24,9 +24,7 @@ from reference.joints import Drive, Joint, Pin, Slot, bodies_of
 from reference.mechanism import Mechanism
 from reference.plane import from_complex
 from reference.scene import PlacedScene
-from reference.validators import Floats
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 
 @dataclass(frozen=True)
@@ -180,7 +178,7 @@ class DrivenSliderCrank(EmbeddedScene):
         """A bound (times,) on the error of the motion [rad, rad/s], which is zero for a prescribed motion."""
         return np.zeros(len(self.times(t))) if self.driven else super().truth_error(t)
 
-    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Array) -> NDArray[np.int_]:
         """The sign of cos(beta): +1 if the slider is to the right of the crank pin, -1 if it is to the left."""
         pin = 2 * pose[..., 0, 0]  # the crank's centre is halfway to its pin
         return np.sign(pose[..., 2, 0] - pin).astype(int)
@@ -217,7 +215,7 @@ class RodEndInSlot(DrivenSliderCrank):
         pose, twist, acceleration = (part[:, :2] for part in super().placement(times))
         return pose, twist, acceleration
 
-    def _branch_of(self, pose: Floats) -> Any:
+    def _branch_of(self, pose: Array) -> Any:
         """+1 if the rod points to the right, -1 if to the left."""
         return np.sign(np.cos(pose[..., 1, 2])).astype(int)
 

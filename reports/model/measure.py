@@ -24,7 +24,7 @@ from reference.checks import freeze
 from reference.mechanism import Mechanism
 from reference.scene import NoMotion, Scene
 from reference.trajectory import ADAPTER_PREFIX, Trajectory
-from reference.validators import Floats
+from reference.validators import Array
 from reports.model.cells import Cell, mechanism_of
 from reports.model.errors import branch_flips, constraint_errors, motion_errors, usable_samples
 from reports.model.fingerprint import LONG, digest
@@ -129,7 +129,7 @@ def blank(cell: Cell, outcome: Outcome = Outcome.FAILED, sentence: str = "") -> 
     )
 
 
-def exact_motion(cell: Cell, t: Floats, folder: Path | None) -> Trajectory:
+def exact_motion(cell: Cell, t: Array, folder: Path | None) -> Trajectory:
     """The scene's motion at the instants t (times,) [s]. If the folder exists, motions are stored there. Instants that
     differ only by rounding share a motion. Raises ValueError if the scene has no such motion."""
     usual = np.arange(len(t)) * (cell.scene.duration / cell.sample_count)

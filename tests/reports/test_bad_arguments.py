@@ -32,7 +32,7 @@ from reference.joints import Gear, Pin
 from reference.mechanism import Body
 from reference.scenes.catalogue import SCENES
 from reference.scenes.four_bar.linkage import FourBar
-from reference.validators import Floats
+from reference.validators import Array
 from reports.model.cells import Cell
 from tests.mechanisms import SCENES_OF_LIMITS, four_bar
 
@@ -52,7 +52,7 @@ KINDS = [
     (Sign, [0, 2, -2, 1.0], [1, -1]),
     (Signs, [0, [1, 0], 0.5], [1, [1, -1]]),
     (Name, ["", " ", "a\nb", "\x00", 3], ["b"]),
-    (Floats, [*NO_ARRAYS, *NOT_FINITE, [1.0, math.nan]], [0.5, [1, 2], array("d", [1.0]), deque([1.0])]),
+    (Array, [*NO_ARRAYS, *NOT_FINITE, [1.0, math.nan]], [0.5, [1, 2], array("d", [1.0]), deque([1.0])]),
     (Times, [*NO_ARRAYS, *NOT_FINITE, -1.0, [0.0, -1e-9], [[0.0, 1.0]]], [0.5, [0.0, 1.0], []]),
 ]
 

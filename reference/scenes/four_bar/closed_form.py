@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from reference.validators import Array
+
 Interval = tuple[float, float]
 
 # Number of roundings by which a crank angle may be outside the reachable range.

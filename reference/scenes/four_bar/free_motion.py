@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism, Positive, Sign, Valid, validated
 from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import IntegrationFailed
 from reference.scenes.four_bar.linkage import FourBar
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 States = Callable[[Array], Any]
 # Tolerance of a thousand roundings of numpy.longdouble, or of one rounding if numpy.longdouble is a double.

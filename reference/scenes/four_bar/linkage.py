@@ -15,15 +15,14 @@ from functools import cached_property
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import Count, InvalidMechanism, Numbers, Positive, Sign, Signs, Valid, short_repr, validated
 from reference.joints import Vector
 from reference.plane import from_complex
 from reference.scenes.four_bar.closed_form import Constants, Interval, Kinematics, OutOfReach, closed_form, grashof
-from reference.validators import of_shape
+from reference.validators import Array, of_shape
 
-Array = NDArray[np.float64]
 Densities = Positive | tuple[Positive, Positive, Positive]  # kg/m, one number for all bars or three numbers
 
 

@@ -20,9 +20,7 @@ from reference.scene import Scene, shared
 from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion, States
 from reference.scenes.four_bar.linkage import Densities, FourBar, Unreachable, three_densities
 from reference.trajectory import Trajectory
-from reference.validators import Floats
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 
 @dataclass(frozen=True)
@@ -57,7 +55,7 @@ class FourBarScene(Scene):
         densities = three_densities(self.density)
         return densities[0] * self.crank, densities[1] * self.coupler, densities[2] * self.rocker
 
-    def _branch_of(self, pose: Floats) -> NDArray[np.int_]:
+    def _branch_of(self, pose: Array) -> NDArray[np.int_]:
         """The sign of sin(phi - beta) (...,), which is +1 if C is left of the directed line B -> D."""
         angle = pose[..., 2]
         return np.sign(np.sin(angle[..., 2] - angle[..., 1])).astype(int)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import (
     Count,
@@ -32,8 +32,7 @@ from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import error_of, integrate, units_of_motion
 from reference.plane import perpendicular, rotation_acceleration, rotation_velocity
 from reference.scenes.pendulum.link import direction_of
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 # Ratio of masses above which the forces are refined. The acceleration of a light link between heavy links is a small
 # difference of large forces.

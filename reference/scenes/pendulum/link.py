@@ -24,8 +24,7 @@ from reference.mechanism import Body, Mechanism
 from reference.plane import rotation_acceleration, rotation_velocity
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 # Jacobi's elliptic functions are computed from the complementary parameter n = 1 - m with the parameter m = k^2. Near
 # the separatrix, m = 1, the motion depends on the logarithm of n, which can't be computed from a rounded m. The method

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import LARGEST_COUNT, Count, Positive, require_room, validated
 from reference.joints import Pin, bodies_of
@@ -16,9 +16,7 @@ from reference.mechanism import Mechanism
 from reference.scene import PlacedScene, Scene, shared
 from reference.scenes.pendulum.chain import Chain
 from reference.trajectory import Trajectory
-from reference.validators import from_to
-
-Array = NDArray[np.float64]
+from reference.validators import Array, from_to
 
 
 @dataclass(frozen=True)
@@ -114,13 +112,11 @@ class OpenChain(Mechanism):
     """An open chain of pinned bodies, which is never singular; body i is the `second` body of pin i."""
 
     @validated
-    def degrees_of_freedom(self, pose: NDArray[np.float64] | None = None) -> tuple[int, int]:
+    def degrees_of_freedom(self, pose: Array | None = None) -> tuple[int, int]:
         """Every pose has one freedom for each body."""
         return len(self.bodies), len(self.bodies)
 
-    def reactions_of(
-        self, pose: NDArray[np.float64], excess: NDArray[np.float64], inertias: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def reactions_of(self, pose: Array, excess: Array, inertias: Array) -> Array:
         """Reactions (..., rows) [N]: a pin carries the sum of mass times acceleration of all bodies below."""
         momentum_rates = inertias[:, :2] * excess[..., :2]
         sums = np.flip(np.cumsum(np.flip(momentum_rates, axis=-2), axis=-2), axis=-2)

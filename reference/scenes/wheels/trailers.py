@@ -12,15 +12,14 @@ from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.checks import Complexes, InvalidMechanism, Positive, Times, Valid, sample_times, validated
 from reference.joints import Triple
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.numerics.roots import first_below
-from reference.validators import NOT_FINITE, Rule, from_to, of_shape
+from reference.validators import NOT_FINITE, Array, Rule, from_to, of_shape
 
-Array = NDArray[np.float64]
 Input = float | Callable[[Array], Array]
 
 # Argument m s up to which the direct formulas with hyperbolic functions have no cancellation.

@@ -31,8 +31,7 @@ from reference.plane import COMPLEX_STEP, components
 from reference.scene import Scene
 from reference.scenes.wheels.trailers import Tow, towed
 from reference.trajectory import Trajectory
-
-Array = NDArray[np.float64]
+from reference.validators import Array
 
 
 @dataclass(frozen=True)
