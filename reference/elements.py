@@ -61,11 +61,12 @@ class JointElement(Element):
 
     size: ClassVar[int] = 1
     holonomic: ClassVar[bool] = True
+    angular: ClassVar[tuple[int, ...]] = ()  # indices of rows that are rotations
 
     @property
     def is_angular(self) -> tuple[bool, ...]:
         """Whether each row (size,) is a rotation [rad, rad/s, N m] and not a length [m, m/s, N]."""
-        return (False,) * self.size
+        return tuple(row in self.angular for row in range(self.size))
 
     @property
     def rate(self) -> tuple[float, ...]:

@@ -85,6 +85,13 @@ class Pin(_JointOfTwo):
         return point_rows(first, second, self.first_point, self.second_point)
 
 
+def _turning_row(first: AnyArray, ratio: Any) -> AnyArray:
+    """The row (..., 1, 6) of the second body's rate minus `ratio` times the first body's rate, at poses (..., 3)."""
+    rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
+    rows[..., 0, 2], rows[..., 0, 5] = -ratio, 1
+    return rows
+
+
 @dataclass(frozen=True)
 class Drive(_JointOfTwo):
     """A prescribed relative rotation: the second body turns against the first at a constant `turning_rate` [rad/s].
@@ -94,15 +101,11 @@ class Drive(_JointOfTwo):
     """
 
     labels: ClassVar[tuple[str, ...]] = ("torque",)
-
+    angular: ClassVar[tuple[int, ...]] = (0,)
     unit_exponents: ClassVar[UnitExponents] = {"turning_rate": (0, -1)}
 
     turning_rate: float
     offset: float
-
-    @property
-    def is_angular(self) -> tuple[bool, ...]:
-        return (True,)
 
     @property
     def rate(self) -> tuple[float, ...]:
@@ -116,10 +119,7 @@ class Drive(_JointOfTwo):
         return (second[..., 2] - first[..., 2] - prescribed)[..., None]
 
     def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
-        rows[..., 0, 2] = -1
-        rows[..., 0, 5] = 1
-        return rows
+        return _turning_row(first, 1)
 
 
 @dataclass(frozen=True)
@@ -226,22 +226,16 @@ class Gear(_JointOfTwo):
     """
 
     labels: ClassVar[tuple[str, ...]] = ("torque",)
+    angular: ClassVar[tuple[int, ...]] = (0,)
 
     ratio: Ratio
     phase: float = 0.0
-
-    @property
-    def is_angular(self) -> tuple[bool, ...]:
-        return (True,)
 
     def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         return (second[..., 2] - np.asarray(self.ratio) * first[..., 2] - np.asarray(self.phase))[..., None]
 
     def rows(self, first: AnyArray, second: AnyArray) -> AnyArray:
-        rows = np.zeros((*first.shape[:-1], 1, 6), dtype=first.dtype)
-        rows[..., 0, 2] = -np.asarray(self.ratio)
-        rows[..., 0, 5] = 1
-        return rows
+        return _turning_row(first, np.asarray(self.ratio))
 
 
 @dataclass(frozen=True)
@@ -255,14 +249,11 @@ class Weld(_JointOfTwo):
 
     size: ClassVar[int] = 3
     labels: ClassVar[tuple[str, ...]] = ("x", "y", "torque")
+    angular: ClassVar[tuple[int, ...]] = (2,)
 
     first_point: Vector
     second_point: Vector
     angle: float = 0.0
-
-    @property
-    def is_angular(self) -> tuple[bool, ...]:
-        return (False, False, True)
 
     def gap(self, first: AnyArray, second: AnyArray, t: ArrayLike) -> AnyArray:
         angle_error = second[..., 2] - first[..., 2] - np.asarray(self.angle)

@@ -14,7 +14,6 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.applied_forces import AppliedForces
 from reference.checks import (
     AnyComplexes,
     InvalidMechanism,
@@ -28,7 +27,7 @@ from reference.checks import (
 from reference.forces import ForceElement
 from reference.joints import Body, Joint, Vector
 from reference.plane import COMPLEX_STEP
-from reference.rows import MANY_ROWS, JointRows, banded_reaction, rank, reactions
+from reference.rows import MANY_ROWS, AppliedForces, JointRows, banded_reaction, rank, reactions
 from reference.scales import length_scale, time_scale
 from reference.validators import Array, of_shape
 

@@ -55,6 +55,18 @@ def from_complex(number: Any) -> AnyArray:
     return np.stack([np.real(number), np.imag(number)], axis=-1)
 
 
+def placed(points: AnyArray, angle: Any) -> AnyArray:
+    """Poses or their derivatives (..., 3) from vectors (..., 2) or complex numbers (...), and angles (...)."""
+    vectors = from_complex(points) if np.iscomplexobj(points) else points
+    return np.concatenate([vectors, np.asarray(angle)[..., None]], axis=-1)
+
+
+def swung(arm: AnyArray, angle: Any, rate: Any, angular_acceleration: Any) -> tuple[AnyArray, AnyArray, AnyArray]:
+    """Pose, twist and acceleration (..., 3) of a body at the end of an arm (..., 2) [m] that turns about the origin."""
+    linear = rotation_acceleration(rate, angular_acceleration, arm)
+    return placed(arm, angle), placed(rotation_velocity(rate, arm), rate), placed(linear, angular_acceleration)
+
+
 def apart(first: AnyArray, second: AnyArray, first_point: Any, second_point: Any) -> AnyArray:
     """The vector (..., 2) [m] from the first point to the second."""
     first_x, first_y = from_body(first[..., 2], first_point)

@@ -1,4 +1,6 @@
-"""Evaluation and rank of a mechanism's velocity rows J, and the reactions along the rows.
+"""Evaluation and rank of a mechanism's velocity rows J, the reactions along the rows, and the sum of force elements.
+
+Joints or force elements of one class are evaluated together.
 
 The magnitude of a row depends on the unit of length, so ranks are computed for rows without units. The product J M^-1
 J^T squares the condition number of M^(-1/2) J^T, so the reactions of few rows are a least-squares solution without the
@@ -17,6 +19,7 @@ from numpy.typing import NDArray
 
 from reference.checks import InvalidMechanism, require_room
 from reference.couplings import Coupling
+from reference.forces import CoupledForce, Ends, ForceElement
 from reference.joints import Joint
 from reference.validators import Array
 
@@ -55,11 +58,7 @@ def undetermined(rows: Array, length: float) -> NDArray[np.bool_]:
 
     These rows have a non-zero component in the null space of rows^T, so the motion does not depend on their reactions.
     """
-    _, singular, right = np.linalg.svd(np.swapaxes(_unitless(rows, length), -1, -2))
-    count = rows.shape[-2]
-    padded = np.zeros((*singular.shape[:-1], count))
-    padded[..., : singular.shape[-1]] = singular
-    idle = padded <= RANK_TOLERANCE * padded[..., :1]
+    idle, right = _idle(np.swapaxes(_unitless(rows, length), -1, -2))
     return np.sqrt(np.sum(np.where(idle[..., None], right**2, 0.0), axis=-2)) > RANK_TOLERANCE
 
 
@@ -112,12 +111,15 @@ def reactions(rows: Array, inertias: Array, excess: Array, size: Array, length: 
     return np.where(finite[..., None], solution, np.nan)
 
 
-def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
+def _idle(matrix: Array) -> tuple[NDArray[np.bool_], Array]:
+    """A mask of the right singular vectors in the matrix's null space, and all right singular vectors as rows."""
     _, singular, right = np.linalg.svd(matrix, full_matrices=True)
-    count = matrix.shape[-1]
-    padded = np.zeros((*singular.shape[:-1], count))
-    padded[..., : singular.shape[-1]] = singular
-    idle = padded <= RANK_TOLERANCE * singular[..., :1]
+    missing = np.zeros((*singular.shape[:-1], matrix.shape[-1] - singular.shape[-1]))
+    return np.concatenate([singular, missing], axis=-1) <= RANK_TOLERANCE * singular[..., :1], right
+
+
+def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Array:
+    idle, right = _idle(matrix)
     # Columns that span the null space of rows^T in units of `size`, and columns of zeros.
     basis = (scale / size)[..., :, None] * np.swapaxes(right, -1, -2) * idle[..., None, :]
     measured = solution / size
@@ -127,6 +129,10 @@ def _smallest(solution: Array, scale: Array, matrix: Array, size: Array) -> Arra
 
 def _times(matrix: Any, vector: Any) -> Array:
     return np.asarray((matrix @ vector[..., None])[..., 0], dtype=np.float64)
+
+
+def _with_ground(values: NDArray[Any]) -> NDArray[Any]:
+    return np.concatenate([values, np.zeros((*values.shape[:-2], 1, 3), dtype=values.dtype)], axis=-2)
 
 
 @dataclass(frozen=True)
@@ -198,7 +204,7 @@ class JointRows:
                 f"mechanism: poses have the shape {pose.shape}; they must be of (..., {self.bodies}, 3), "
                 "x, y and angle of every body"
             )
-        return np.concatenate([pose, np.zeros((*pose.shape[:-2], 1, 3), dtype=pose.dtype)], axis=-2)
+        return _with_ground(pose)
 
     def gap(self, pose: NDArray[Any], t: NDArray[Any]) -> NDArray[Any]:
         everything = self.with_ground(pose)
@@ -242,6 +248,75 @@ def stacked(joints: Sequence[Any]) -> Any:
     stacked = copy(joints[0])  # not validated, since fields of a joint may not be arrays
     stacked.__dict__.update({name: np.array([getattr(joint, name) for joint in joints]) for name in numeric})
     return stacked
+
+
+@dataclass(frozen=True)
+class ForceGroup:
+    """Force elements of one class, which are evaluated together.
+
+    element: an object of the class whose numeric fields are arrays with the elements along the first axis. first,
+    second (elements,): indices of the bodies; the ground has the index after the last body.
+    """
+
+    element: Any
+    first: NDArray[np.intp]
+    second: NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class AppliedForces:
+    groups: tuple[ForceGroup, ...]
+    bodies: int
+    coupled: tuple[tuple[CoupledForce, Ends], ...] = ()
+
+    @classmethod
+    def of(cls, forces: Sequence[ForceElement], index: Mapping[str | None, int]) -> AppliedForces:
+        """Group the elements by class. In `index` None is the ground."""
+        by_class: dict[type, list[Any]] = {}
+        coupled: list[tuple[CoupledForce, Ends]] = []
+        for element in forces:
+            if isinstance(element, CoupledForce):
+                coupled.append((element, tuple((index[term.first], index[term.second]) for term in element.terms)))
+            else:
+                by_class.setdefault(type(element), []).append(element)
+        groups = tuple(
+            ForceGroup(
+                element=stacked(members),
+                first=np.array([index[element.first] for element in members]),
+                second=np.array([index[element.second] for element in members]),
+            )
+            for members in by_class.values()
+        )
+        return cls(groups, index[None], tuple(coupled))
+
+    @property
+    def dissipate(self) -> bool:
+        elements = (*(group.element for group in self.groups), *(element for element, _ in self.coupled))
+        return any(element.dissipates for element in elements)
+
+    def on(self, pose: NDArray[Any], twist: NDArray[Any]) -> NDArray[Any]:
+        """Generalised forces (..., bodies, 3) [N, N, N m] at poses and twists of the same shape."""
+        poses, twists = _with_ground(pose), _with_ground(twist)
+        out = np.zeros(poses.shape, dtype=np.result_type(poses, twists, float))
+        for group in self.groups:
+            ends = (poses[..., group.first, :], poses[..., group.second, :])
+            forces = group.element.on(*ends, twists[..., group.first, :], twists[..., group.second, :])
+            for index in range(len(group.first)):  # a loop, since several elements may act on one body
+                out[..., group.first[index], :] += forces[..., index, :3]
+                out[..., group.second[index], :] += forces[..., index, 3:]
+        for element, ends in self.coupled:
+            element.push(poses, twists, ends, out)
+        return out[..., :-1, :]
+
+    def potential(self, pose: NDArray[Any]) -> NDArray[Any]:
+        """The sum of the elements' potential energies (...) [J] at poses (..., bodies, 3)."""
+        poses = _with_ground(pose)
+        out = np.zeros(poses.shape[:-2], dtype=np.result_type(poses, float))
+        for group in self.groups:
+            out = out + group.element.potential(poses[..., group.first, :], poses[..., group.second, :]).sum(axis=-1)
+        for element, ends in self.coupled:
+            out = out + element.potential(poses, ends)
+        return out
 
 
 # Number of rows from which the band solver is used; for fewer rows the dense solver is as fast.

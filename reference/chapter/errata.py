@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -117,8 +117,7 @@ def bar_end(t: Any, bar: int) -> Any:
     return BAR * np.stack([np.sin(angle), -np.cos(angle)])
 
 
-@dataclass(frozen=True)
-class BarState:
+class BarState(NamedTuple):
     """One bar with length [m], angle [rad] from the downward vertical, rate [rad/s] and acceleration [rad/s^2]."""
 
     length: float
@@ -129,12 +128,13 @@ class BarState:
 
 def right(bar: BarState) -> Array:
     """l (phi'' cos phi - phi'^2 sin phi, phi'' sin phi + phi'^2 cos phi) (2,) [m/s^2]."""
-    return accelerations(bar.length, (bar.angle, 0.0), (bar.rate, 0.0), (bar.angular_acceleration, 0.0)).a
+    direction = direction_of(np.asarray(bar.angle))
+    return bar.length * rotation_acceleration(bar.rate, bar.angular_acceleration, direction)
 
 
 def omega_in_the_first_term(bar: BarState) -> Array:
     """omega x r + omega x (omega x r), as printed; the first term is a velocity."""
-    return right(BarState(bar.length, bar.angle, bar.rate, bar.rate))
+    return right(bar._replace(angular_acceleration=bar.rate))
 
 
 def dot_missing_in_i(bar: BarState) -> Array:
@@ -187,8 +187,6 @@ def accelerations(
     """In problem 18.5.2, a_A = l (phi1'' cos phi1 - phi1'^2 sin phi1, phi1'' sin phi1 + phi1'^2 cos phi1), and a_B/A
     has the same form with phi2.
     """
-    first, second = (
-        length * rotation_acceleration(rate, alpha, direction_of(np.asarray(phi)))
-        for phi, rate, alpha in zip(angles, rates, angular_accelerations, strict=True)
-    )
+    bars = zip(angles, rates, angular_accelerations, strict=True)
+    first, second = (right(BarState(length, *bar)) for bar in bars)
     return TwoPoints(first, second, first + second)

@@ -7,9 +7,10 @@ The directions of the bars, the reduced inertia and the potential are closed fun
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,10 +20,10 @@ from reference.forces import Spring, Torque
 from reference.joints import Pin, Vector, bodies_of
 from reference.mechanism import Mechanism
 from reference.numerics import gauss_collocation as gauss
-from reference.plane import from_complex
+from reference.plane import placed
 from reference.scene import PlacedScene, shared
-from reference.validators import Array
 
+Array = NDArray[Any]
 Pair = tuple[Positive, float]
 Triple = tuple[Positive, float, float]
 Seven = tuple[Positive, Positive, Positive, Positive, Positive, Positive, Positive]
@@ -190,17 +191,14 @@ class Andrews(PlacedScene):
         phi, rate = state[:, 0], state[:, 1]
         gain = self._rates(state / [1.0, self.rate_unit])[:, 1] * self.rate_unit**2
         angles, centres, _ = self._placed(phi)
-        parts = []
-        for order in range(3):
-            bodies = []
-            for centre, angle in zip(centres, angles, strict=True):
-                by_time = [
-                    (part.value, part.first * rate, part.first * gain + part.second * rate**2)[order]
-                    for part in (centre, angle)
-                ]
-                bodies.append(np.column_stack([from_complex(by_time[0]), by_time[1]]))
-            parts.append(np.stack(bodies, axis=1))
-        return parts[0], parts[1], parts[2]
+
+        def by_time(parts: Sequence[Moving]) -> tuple[Array, Array, Array]:
+            value, first, second = (np.stack(members, axis=-1) for members in zip(*parts, strict=True))
+            of_rate, of_gain = rate[:, None], gain[:, None]
+            return value, first * of_rate, first * of_gain + second * of_rate**2
+
+        pose, twist, acceleration = map(placed, by_time(centres), by_time(angles))
+        return pose, twist, acceleration
 
     def mechanism(self) -> Mechanism:
         pose, twist, _ = self.placement(np.zeros(1))

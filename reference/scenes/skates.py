@@ -19,8 +19,8 @@ from reference.checks import InvalidMechanism, NonNegative, Positive, validated
 from reference.joints import Pin, Skate, Triple, Vector, bodies_of
 from reference.mechanism import Body, Mechanism
 from reference.numerics.calculus import Antiderivative
-from reference.plane import rotated, rotation_acceleration, rotation_velocity
-from reference.scene import Scene
+from reference.plane import components, rotated, swung
+from reference.scene import PlacedScene, Scene
 from reference.scenes.pendulum.link import Pendulum
 from reference.trajectory import Trajectory
 from reference.validators import Array
@@ -76,11 +76,10 @@ class PinnedBody(Scene):
 
     def _motion(self, times: Array) -> Trajectory:
         angle, rate, acceleration = self._turning(times)
-        arm = -rotated(angle, np.array(self.point))  # by (18.63)
-        pose = np.column_stack([np.array(self.pin) + arm, angle])
-        twist = np.concatenate([rotation_velocity(rate, arm), rate[:, None]], axis=-1)
-        pull = rotation_acceleration(rate, acceleration, arm) - np.array(self.gravity)
-        return Trajectory(times, pose[:, None, :], twist[:, None, :], self.mass * pull)
+        # The arm from the pin to the centre of mass is by (18.63).
+        pose, twist, linear = swung(-rotated(angle, np.array(self.point)), angle, rate, acceleration)
+        pose[:, :2] += self.pin
+        return Trajectory(times, pose[:, None], twist[:, None], self.mass * (linear[:, :2] - self.gravity))
 
 
 @dataclass(frozen=True)
@@ -213,14 +212,10 @@ class ChaplyginSleigh(Scene):
         return one_body(self, self.mass, self.inertia, Skate("skate", None, "sleigh", (-self.offset, 0.0)))
 
     def _motion(self, times: Array) -> Trajectory:
-        t = times
-        pose = self._skate_pose(t)
-        speed, turning = self.rates(t)
-        cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        across = self.offset * turning
-        centre = pose + np.stack([self.offset * cosine, self.offset * sine, np.zeros_like(t)], axis=-1)
-        twist = np.stack([speed * cosine - across * sine, speed * sine + across * cosine, turning], axis=-1)
-        return Trajectory(t, centre[:, None, :], twist[:, None, :], self._lateral_force(speed, turning)[:, None])
+        pose, (speed, turning) = self._skate_pose(times), self.rates(times)
+        twist = np.stack([*components(pose[:, 2], speed, self.offset * turning), turning], axis=-1)
+        pose[:, :2] += rotated(pose[:, 2], np.array([self.offset, 0.0]))
+        return Trajectory(times, pose[:, None], twist[:, None], self._lateral_force(speed, turning)[:, None])
 
 
 @dataclass(frozen=True)
@@ -262,19 +257,17 @@ class SkateOnSlope(Scene):
         return one_body(self, self.mass, self.inertia, blade, (0.0, -self.gravity))
 
     def _motion(self, times: Array) -> Trajectory:
-        t = times
-        first, rate = self.heading, self.turning_rate
+        t, first, rate = times, self.heading, self.turning_rate
         angle, half = first + rate * t, 0.5 * rate * t
         # (cos theta - cos first)/rate = -t sin(first + half) sinc(half) has no cancellation at a small rate.
         chord = t * np.sinc(half / math.pi)
         speed = self.speed - self.gravity * chord * np.sin(first + half)
-        x, y = self._path(t)
-        pose = np.stack([x, y, angle], axis=-1)
+        pose = np.stack([*self._path(t), angle], axis=-1)
         twist = np.stack([speed * np.cos(angle), speed * np.sin(angle), np.full_like(t, rate)], axis=-1)
         force = self.mass * (speed * rate + self.gravity * np.cos(angle))
-        return Trajectory(t, pose[:, None, :], twist[:, None, :], force[:, None])
+        return Trajectory(t, pose[:, None], twist[:, None], force[:, None])
 
-    def _path(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _path(self, t: Array) -> tuple[Array, Array]:
         first, rate, pull = self.heading, self.turning_rate, self.gravity
         if abs(rate) * float(t.max(initial=0.0)) < 1:
             # The closed form divides by the rate's square. Within a radian, Gauss quadrature is exact.
@@ -296,7 +289,7 @@ class SkateOnSlope(Scene):
 
 
 @dataclass(frozen=True)
-class HeldBySkates(Scene):
+class HeldBySkates(PlacedScene):
     """A body at rest on a slope, whose skates remove all freedoms of velocity.
 
     Two skates always leave one freedom, since their axles intersect in the centre of rotation or are parallel. A third
@@ -318,15 +311,14 @@ class HeldBySkates(Scene):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        owner = f"scene {self.name!r}"
         if len(self.points) != len(self.angles):
             counts = f"{len(self.points)} points and {len(self.angles)} angles"
-            raise InvalidMechanism(f"{owner}: {counts}; each skate has one")
+            raise InvalidMechanism(f"{self._owner()}: {counts}; each skate has one")
         _, freedoms = self.mechanism().degrees_of_freedom()
         if freedoms:
             raise InvalidMechanism(
-                f"{owner}: these {len(self.points)} skates leave {freedoms} freedom of velocity, so the body moves; "
-                f"their axles must not all be parallel or meet in one point"
+                f"{self._owner()}: these {len(self.points)} skates leave {freedoms} freedom of velocity, so the body "
+                "moves; their axles must not all be parallel or meet in one point"
             )
 
     def mechanism(self) -> Mechanism:
@@ -336,7 +328,6 @@ class HeldBySkates(Scene):
         )
         return Mechanism((Body("body", self.mass, self.inertia, self.pose),), joints, (0.0, -self.gravity))
 
-    def _motion(self, times: Array) -> Trajectory:
-        pose = np.broadcast_to(np.array(self.pose, dtype=float), (len(times), 1, 3)).copy()
-        zero = np.zeros_like(pose)
-        return Trajectory(times, pose, zero, self.mechanism().reaction(pose, zero))
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        zero = np.zeros((len(times), 1, 3))
+        return zero + self.pose, zero, zero

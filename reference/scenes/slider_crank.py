@@ -22,7 +22,7 @@ from reference.checks import Complexes, InvalidMechanism, Positive, Sign, Valid,
 from reference.embedding import EmbeddedScene
 from reference.joints import Drive, Joint, Pin, Slot, bodies_of
 from reference.mechanism import Mechanism
-from reference.plane import from_complex
+from reference.plane import placed
 from reference.scene import PlacedScene
 from reference.validators import Array
 
@@ -280,20 +280,18 @@ class SlottedLever(PlacedScene):
         turning, bending = self.rate * 1j * crank / reach, -(self.rate**2) * crank / reach  # P'/reach and P''/reach.
         angle, rate = np.angle(reach), turning.imag
         # The angle's second derivative is the imaginary part of log(reach)'' = P''/reach - (P'/reach)^2.
-        acceleration = (bending - turning**2).imag
+        turned = (bending - turning**2).imag
         bar = 0.5 * self.lever * np.exp(-1j * self.slant) * reach / np.abs(reach)
         zero = np.zeros_like(times)
-        parts = []
-        for centres, turns in (
-            ((crank / 2, bar - self.distance), (theta, angle - self.slant)),
-            ((0.5j * self.rate * crank, 1j * rate * bar), (zero + self.rate, rate)),
-            ((-0.5 * self.rate**2 * crank, (1j * acceleration - rate**2) * bar), (zero, acceleration)),
-        ):
-            bodies = [
-                np.column_stack([from_complex(centre), turn]) for centre, turn in zip(centres, turns, strict=True)
-            ]
-            parts.append(np.stack(bodies, axis=1))
-        return parts[0], parts[1], parts[2]
+        pose, twist, acceleration = (
+            np.stack([placed(*of_crank), placed(*of_lever)], axis=1)
+            for of_crank, of_lever in (
+                ((crank / 2, theta), (bar - self.distance, angle - self.slant)),
+                ((0.5j * self.rate * crank, zero + self.rate), (1j * rate * bar, rate)),
+                ((-0.5 * self.rate**2 * crank, zero), ((1j * turned - rate**2) * bar, turned)),
+            )
+        )
+        return pose, twist, acceleration
 
     def mechanism(self) -> Mechanism:
         pose, twist, _ = self.placement(np.zeros(1))

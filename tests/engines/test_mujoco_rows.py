@@ -112,7 +112,7 @@ def test_user_rows_of_a_roll_are_those_of_the_joint_with_its_velocity_term() -> 
     mechanism = Mechanism(gears.mechanism().bodies, (roll,))
     joint = UserRowJoint("roll", roll.first, roll.second, (100.0, 20.0), rolled(roll.rolling))
     writer = RowWriter(spanning_tree(mechanism), range(6), [joint])
-    pose, twist, _ = gears.kinematics(np.linspace(0.0, 1.7, 12))
+    pose, twist, _ = gears.placement(np.linspace(0.0, 1.7, 12))
     # The joint's rows are along e_t and e_n, and the user rows are along x and y.
     contact = roll.rolling.contact(pose[:, 1, 2] - pose[:, 0, 2])
     angle = contact.tangent_angle + pose[:, 0, 2]

@@ -18,8 +18,6 @@ from reference.checks import InvalidMechanism, cached_readonly
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.numerics.calculus import derivative
-from reference.plane import components, from_complex, perpendicular, rotated, rotation_acceleration, rotation_velocity
 from reference.rows import banded_reaction, rank, reactions, solve_symmetric, undetermined
 from reference.scales import length_scale, time_scale
 from reference.scenes.catalogue import SCENES
@@ -56,31 +54,6 @@ def test_rows_are_derivatives_of_the_gap_and_the_bias_is_minus_the_rate_of_the_r
     ahead, behind = (np.einsum("trc,tc->tr", mechanism.rows(at), twists.reshape(20, -1)) for at in states)
     bias = mechanism.bias(poses, twists)
     np.testing.assert_allclose(bias, -(ahead - behind) / (2 * h), rtol=0, atol=1e-6 * np.abs(bias).max())
-
-
-def test_rotation_velocity_and_acceleration_are_derivatives_of_a_rotated_vector():
-    angle, rate, alpha, vector = 0.7, -1.3, 0.4, np.array([1.1, -0.6])
-
-    def place(t):
-        return np.moveaxis(rotated(angle + rate * t + alpha * t * t / 2, vector), -1, 0)
-
-    arm = rotated(angle, vector)
-    turned = from_complex(np.exp(1j * angle) * complex(*vector))
-    for found in (arm, np.stack(components(angle, *vector))):
-        np.testing.assert_allclose(found, turned, atol=1e-15)
-    np.testing.assert_allclose(rotated(np.pi / 2, vector), perpendicular(vector), atol=1e-15)
-    np.testing.assert_allclose(rotation_velocity(rate, arm), derivative(place, 0.0), atol=1e-12)
-    np.testing.assert_allclose(rotation_acceleration(rate, alpha, arm), derivative(place, 0.0, order=2), atol=1e-11)
-
-
-def test_reactions_computed_from_accelerations_satisfy_newtons_law():
-    driven = four_bar(crank_rate=10.0, drive=10.0)
-    rows = driven.rows(driven.pose)
-    reaction = RANDOM.normal(size=driven.row_count)
-    weight = 1 / driven.inertias.reshape(-1)
-    acceleration = (driven.free_fall.reshape(-1) + weight * (rows.T @ reaction)).reshape(-1, 3)
-    # The condition number of the rows is about 1e3, so rounding causes an error of 1e-13.
-    np.testing.assert_allclose(driven.reaction(driven.pose, acceleration), reaction, atol=1e-12)
 
 
 def test_reactions_are_computed_with_the_masses_and_gravity_of_the_engines_model():

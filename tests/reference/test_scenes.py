@@ -16,9 +16,9 @@ import pytest
 from engines.lagrange import Lagrange
 from reference.joints import Drive
 from reference.mechanism import Mechanism
-from reference.scene import PlacedScene, Scene
+from reference.scene import Scene
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.scenes import DrivenFourBar, FourBarScene, FreeFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
 from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
@@ -33,7 +33,7 @@ from reference.scenes.slider_crank import (
     SlottedLever,
 )
 from reference.scenes.wheels.vehicles import CarAndTrailer, Cart
-from reference.trajectory import Trajectory, energy, joint_gap, slip
+from reference.trajectory import Trajectory, joint_gap, slip
 from tests.mechanisms import SCENES_OF_LIMITS
 from tests.present import present
 
@@ -156,30 +156,6 @@ def test_a_scenes_motion_starts_at_the_mechanisms_state_and_satisfies_its_joints
 def test_a_scenes_reactions_satisfy_newtons_law(each: Scene) -> None:
     mechanism, motion, _, change = known(each)
     assert off_newton(mechanism, motion, change) < NEWTON
-
-
-def told(each: Scene, t: np.ndarray) -> np.ndarray | None:
-    """The accelerations from which the scene computes its reactions, or None without such accelerations."""
-    if isinstance(each, FourBarScene):
-        return each._bodies(each._angles(t))[2]  # pyright: ignore[reportAttributeAccessIssue]
-    return each.placement(t)[2] if isinstance(each, PlacedScene) else None
-
-
-@pytest.mark.parametrize("each", [each for each in ALL if isinstance(each, FourBarScene | PlacedScene)], ids=name_of)
-def test_a_scenes_accelerations_are_derivatives_of_its_twists(each: Scene) -> None:
-    mechanism, motion, _, change = known(each)
-    off = np.abs((present(told(each, motion.t)) - change) / mechanism.pose_unit).max()
-    assert off < 1e-9 * max(np.abs(change / mechanism.pose_unit).max(), fastest(mechanism, motion) ** 2)
-
-
-@each_scene
-def test_the_energy_of_scenes_without_a_drive_is_constant(each: Scene) -> None:
-    mechanism, motion, *_ = known(each)
-    if any(isinstance(joint, Drive) and joint.turning_rate for joint in mechanism.joints):
-        pytest.skip("a drive does work")
-    total = energy(mechanism, motion)
-    span = np.sum(mechanism.inertias * motion.twist**2, axis=(1, 2)).max() / 2
-    assert np.ptp(total) <= 1e-12 * (span + np.abs(total).max())
 
 
 @pytest.mark.parametrize("each", [each for each in ALL if each.name != "n_four_bar_40"], ids=name_of)

@@ -7,7 +7,6 @@ defines the letters and derives the equations.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,8 +45,7 @@ def difference(*terms: float) -> float:
     return 0.0 if abs(total) <= 4 * np.finfo(float).eps * sum(abs(term) for term in terms) else total
 
 
-@dataclass(frozen=True)
-class Constants:
+class Constants(NamedTuple):
     """Constants of the closed form for lengths l1, l2, l3 [m] and the ground vector A -> D of length d [m].
 
     heading [rad] is the direction of A -> D. outer_near and outer_far are U at theta' = 0 and pi, inner_near and
@@ -69,11 +67,7 @@ class Constants:
     def of(cls, l1: float, l2: float, l3: float, ground: tuple[float, float]) -> Constants:
         d = math.hypot(*ground)
         return cls(
-            l1=l1,
-            l2=l2,
-            l3=l3,
-            d=d,
-            heading=math.atan2(ground[1], ground[0]),
+            *(l1, l2, l3, d, math.atan2(ground[1], ground[0])),
             outer_far=difference(l2, l3, -l1, -d) * (l2 + l3 + l1 + d),
             outer_near=difference(l2, l3, -l1, d) * difference(l2, l3, l1, -d),
             inner_near=difference(l1, -d, -l2, l3) * difference(l1, -d, l2, -l3),
@@ -86,11 +80,8 @@ class Constants:
         # U or W is zero at theta' = 2 atan(sqrt(ratio)).
         outer = 2 * math.atan2(math.sqrt(self.outer_near), math.sqrt(-self.outer_far)) if self.outer_far < 0 else None
         inner = 2 * math.atan2(math.sqrt(-self.inner_near), math.sqrt(self.inner_far)) if self.inner_near < 0 else None
-        if outer is None and inner is None:
-            return None
         if inner is None:
-            assert outer is not None
-            return ((self.heading - outer, self.heading + outer),)
+            return None if outer is None else ((self.heading - outer, self.heading + outer),)
         if outer is None:
             return ((self.heading + inner, self.heading + 2 * math.pi - inner),)
         return ((self.heading - outer, self.heading - inner), (self.heading + inner, self.heading + outer))

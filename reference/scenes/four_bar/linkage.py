@@ -17,7 +17,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.checks import Count, InvalidMechanism, Numbers, Positive, Sign, Signs, Valid, short_repr, validated
+from reference.checks import Count, InvalidMechanism, Positive, Sign, Signs, Valid, short_repr, validated
 from reference.joints import Vector
 from reference.plane import from_complex
 from reference.scenes.four_bar.closed_form import Constants, Interval, Kinematics, OutOfReach, closed_form, grashof
@@ -42,50 +42,6 @@ class Forces(NamedTuple):
 @validated
 def three_densities(density: Densities) -> tuple[float, float, float]:
     return density if isinstance(density, tuple) else (density, density, density)
-
-
-@validated
-def bar_forces(
-    lengths: tuple[Positive, Positive, Positive],
-    density: Densities,
-    gravity: tuple[float, float],
-    angles: tuple[Numbers, Numbers, Numbers],
-    rates: tuple[Numbers, Numbers, Numbers],
-    accelerations: tuple[Numbers, Numbers, Numbers],
-) -> Forces:
-    """Forces that cause a motion of uniform bars.
-
-    lengths [m]; density [kg/m] of all bars or of crank, coupler and rocker; gravity [m/s^2]. Angles, rates and
-    accelerations of crank, coupler and rocker (theta, beta, phi) broadcast.
-    """
-    masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
-    falling = complex(*gravity)
-    # Vectors of the plane are complex numbers. `half` is the vector from a bar's first end to its centre, `moving` the
-    # acceleration of the centre relative to that end.
-    half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
-    moving = [
-        arm * (1j * np.asarray(acceleration) - np.asarray(rate) ** 2)
-        for arm, rate, acceleration in zip(half, rates, accelerations, strict=True)
-    ]
-    pull = [
-        masses[0] * (moving[0] - falling),
-        masses[1] * (2 * moving[0] + moving[1] - falling),
-        masses[2] * (moving[2] - falling),
-    ]  # m (a - g) of each bar is the sum of its pin forces
-    spin = [
-        mass * length**2 / 12 * np.asarray(acceleration)
-        for mass, length, acceleration in zip(masses, lengths, accelerations, strict=True)
-    ]
-    # The balances of moments of the coupler about B and of the rocker about D determine the force at C.
-    coupler, rocker = 2 * half[1], 2 * half[2]
-    about_b = -(spin[1] + _cross(half[1], pull[1]))
-    about_d = spin[2] + _cross(half[2], pull[2])
-    at_c = (rocker * about_b - coupler * about_d) / _cross(coupler, rocker)
-    at_b = pull[1] + at_c
-    at_a = pull[0] + at_b
-    at_d = pull[2] - at_c
-    torque = spin[0] + _cross(half[0], pull[0]) + _cross(2 * half[0], at_b)
-    return Forces(from_complex(at_a), from_complex(at_b), from_complex(at_c), from_complex(at_d), torque)
 
 
 def _cross(first: Any, second: Any) -> Any:
@@ -324,14 +280,36 @@ class FourBar(Valid):
         not finite at a crank limit.
         """
         motion = self.kinematics(theta, theta_dot, theta_ddot, branch)
-        return bar_forces(
-            self.lengths,
-            density,
-            gravity,
-            (np.asarray(theta, dtype=float), motion.beta, motion.phi),
-            (np.asarray(theta_dot, dtype=float), motion.beta_dot, motion.phi_dot),
-            (np.asarray(theta_ddot, dtype=float), motion.beta_ddot, motion.phi_ddot),
-        )
+        lengths, falling = self.lengths, complex(*gravity)
+        angles, rates = (theta, motion.beta, motion.phi), (theta_dot, motion.beta_dot, motion.phi_dot)
+        accelerations = (theta_ddot, motion.beta_ddot, motion.phi_ddot)
+        masses = [rho * length for rho, length in zip(three_densities(density), lengths, strict=True)]
+        # Vectors of the plane are complex numbers. `half` is the vector from a bar's first end to its centre, and
+        # `moving` is the acceleration of the centre relative to that end.
+        half = [length / 2 * np.exp(1j * np.asarray(angle)) for length, angle in zip(lengths, angles, strict=True)]
+        moving = [
+            arm * (1j * np.asarray(acceleration) - np.asarray(rate) ** 2)
+            for arm, rate, acceleration in zip(half, rates, accelerations, strict=True)
+        ]
+        pull = [
+            masses[0] * (moving[0] - falling),
+            masses[1] * (2 * moving[0] + moving[1] - falling),
+            masses[2] * (moving[2] - falling),
+        ]  # m (a - g) of each bar is the sum of its pin forces
+        spin = [
+            mass * length**2 / 12 * np.asarray(acceleration)
+            for mass, length, acceleration in zip(masses, lengths, accelerations, strict=True)
+        ]
+        # The balances of moments of the coupler about B and of the rocker about D determine the force at C.
+        coupler, rocker = 2 * half[1], 2 * half[2]
+        about_b = -(spin[1] + _cross(half[1], pull[1]))
+        about_d = spin[2] + _cross(half[2], pull[2])
+        at_c = (rocker * about_b - coupler * about_d) / _cross(coupler, rocker)
+        at_b = pull[1] + at_c
+        at_a = pull[0] + at_b
+        at_d = pull[2] - at_c
+        torque = spin[0] + _cross(half[0], pull[0]) + _cross(2 * half[0], at_b)
+        return Forces(from_complex(at_a), from_complex(at_b), from_complex(at_c), from_complex(at_d), torque)
 
     @validated
     def integrate_rates(

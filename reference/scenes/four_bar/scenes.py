@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from reference.checks import InvalidMechanism, Positive, Sign
 from reference.joints import Drive, Joint, Pin, Vector, bodies_of
 from reference.mechanism import Mechanism
 from reference.numerics.gauss_collocation import COARSE_STAGES, STAGES
+from reference.plane import placed
 from reference.scene import Scene, shared
 from reference.scenes.four_bar.free_motion import BarAngles, CurveMotion, States
 from reference.scenes.four_bar.linkage import Densities, FourBar, Unreachable, three_densities
@@ -76,18 +77,15 @@ class FourBarScene(Scene):
 
     def _bodies(self, motion: BarAngles) -> tuple[Array, Array, Array]:
         bars = np.array(self.four_bar.lengths) * np.exp(1j * motion.angle)
-        velocities = 1j * motion.rate * bars
-        accelerations = (1j * motion.acceleration - motion.rate**2) * bars
-        pose, twist, acceleration = (np.empty((*motion.angle.shape, 3)) for _ in range(3))
-        for out, ends, origin, angle in (
-            (pose, bars, complex(*self.ground), motion.angle),
-            (twist, velocities, 0j, motion.rate),
-            (acceleration, accelerations, 0j, motion.acceleration),
-        ):
-            middles = (ends[:, 0] / 2, ends[:, 0] + ends[:, 1] / 2, origin + ends[:, 2] / 2)
-            centre = np.stack(middles, axis=-1)
-            out[..., 0], out[..., 1], out[..., 2] = centre.real, centre.imag, angle
-        return pose, twist, acceleration
+
+        def centres(ends: Any, origin: complex = 0j) -> Any:
+            return np.stack([ends[:, 0] / 2, ends[:, 0] + ends[:, 1] / 2, origin + ends[:, 2] / 2], axis=-1)
+
+        return (
+            placed(centres(bars, complex(*self.ground)), motion.angle),
+            placed(centres(1j * motion.rate * bars), motion.rate),
+            placed(centres((1j * motion.acceleration - motion.rate**2) * bars), motion.acceleration),
+        )
 
 
 @dataclass(frozen=True)

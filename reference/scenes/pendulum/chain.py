@@ -30,7 +30,7 @@ from reference.checks import (
 )
 from reference.numerics import gauss_collocation as gauss
 from reference.numerics.integration import error_of, integrate, units_of_motion
-from reference.plane import perpendicular, rotation_acceleration, rotation_velocity
+from reference.plane import perpendicular, placed, rotation_acceleration, rotation_velocity
 from reference.scenes.pendulum.link import direction_of
 from reference.validators import Array
 
@@ -225,18 +225,20 @@ class Chain(Valid):
         Raises InvalidMechanism if the matrix takes more than checks.LARGEST_ARRAY.
         """
         require_room("chain: the dense inertia matrix", (self.links, self.links))
-        below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
-        lever = self._length * (self._mass / 2 + below)
-        index = np.arange(self.links)
+        lever, index = self._length * (self._mass / 2 + self._below), np.arange(self.links)
         matrix = np.where(index[:, None] < index, np.outer(self._length, lever), np.outer(lever, self._length))
-        np.fill_diagonal(matrix, self._length**2 * (self._mass / 3 + below))
+        np.fill_diagonal(matrix, self._length**2 * (self._mass / 3 + self._below))
         return matrix
+
+    @property
+    def _below(self) -> Array:
+        """The mass below each link (links,) [kg]."""
+        return np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
 
     @cached_readonly
     def stiffness(self) -> Array:
         """K_i (links,) [N m] in the potential energy, which is the sum of -K_i cos(angle_i)."""
-        below = np.concatenate([np.cumsum(self._mass[::-1])[::-1][1:], [0.0]])
-        return self.gravity * self._length * (self._mass / 2 + below)
+        return self.gravity * self._length * (self._mass / 2 + self._below)
 
     def modes(self) -> tuple[Array, Array]:
         """Frequencies (links,) [rad/s], ascending, and shapes (links, modes) of angles of small oscillations about
@@ -257,11 +259,9 @@ class Chain(Valid):
             return 2 * np.cumsum(steps, axis=-2) - steps
 
         return (
-            np.concatenate([centres(half), (angle - math.pi / 2)[..., None]], axis=-1),
-            np.concatenate([centres(rotation_velocity(rate, half)), rate[..., None]], axis=-1),
-            np.concatenate(
-                [centres(rotation_acceleration(rate, acceleration, half)), acceleration[..., None]], axis=-1
-            ),
+            placed(centres(half), angle - math.pi / 2),
+            placed(centres(rotation_velocity(rate, half)), rate),
+            placed(centres(rotation_acceleration(rate, acceleration, half)), acceleration),
         )
 
     @validated

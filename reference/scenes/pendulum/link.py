@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.checks import LARGEST_ARRAY, NonNegative, Positive, Valid, require_room, validated
-from reference.joints import Pin
-from reference.mechanism import Body, Mechanism
-from reference.plane import rotation_acceleration, rotation_velocity
+from reference.joints import Pin, bodies_of
+from reference.mechanism import Mechanism
+from reference.plane import swung
 from reference.scene import Poses, Scene
 from reference.trajectory import Trajectory
 from reference.validators import Array
@@ -237,18 +237,13 @@ class BarPendulum(Scene):
     def mechanism(self) -> Mechanism:
         pose, twist, _ = self._bar(np.zeros(1))
         inertia = self.mass * self.length**2 / 12
-        bar = Body("link 1", self.mass, inertia, tuple(pose[0].tolist()), tuple(twist[0].tolist()))
+        bar = bodies_of(("link 1",), (self.mass,), (inertia,), pose, twist)
         joint = Pin("joint 1", None, "link 1", (0.0, 0.0), (-self.length / 2, 0.0))
-        return Mechanism((bar,), (joint,), (0.0, -self.gravity))
+        return Mechanism(bar, (joint,), (0.0, -self.gravity))
 
     def _bar(self, t: Array) -> tuple[Array, Array, Array]:
         angle, rate, acceleration = self.pendulum.motion(t)
-        arm = self.length / 2 * direction_of(angle)
-        return (
-            np.column_stack([arm, angle - math.pi / 2]),
-            np.column_stack([rotation_velocity(rate, arm), rate]),
-            np.column_stack([rotation_acceleration(rate, acceleration, arm), acceleration]),
-        )
+        return swung(self.length / 2 * direction_of(angle), angle - math.pi / 2, rate, acceleration)
 
     def _motion(self, times: Array) -> Trajectory:
         pose, twist, acceleration = self._bar(times)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from reference.checks import LARGEST_COUNT, Count, Positive, require_room, validated
 from reference.joints import Pin, bodies_of
 from reference.mechanism import Mechanism
+from reference.plane import perpendicular, placed
 from reference.scene import PlacedScene, Scene, shared
 from reference.scenes.pendulum.chain import Chain
 from reference.trajectory import Trajectory
@@ -67,15 +68,10 @@ class LinkPendulum(Scene):
         names = [f"link {i + 1}" for i in range(self.links)]
         bodies = bodies_of(names, self.chain.masses, self.chain.inertia, pose, twist)
         half = self.length / 2
+        uppers = [(None, (0.0, 0.0)), *((name, (half, 0.0)) for name in names)]
         joints = tuple(
-            Pin(
-                f"joint {i + 1}",
-                bodies[i - 1].name if i else None,
-                bodies[i].name,
-                (half, 0.0) if i else (0.0, 0.0),
-                (-half, 0.0),
-            )
-            for i in range(self.links)
+            Pin(f"joint {i + 1}", upper, name, point, (-half, 0.0))
+            for i, ((upper, point), name) in enumerate(zip(uppers, names, strict=False))
         )
         return Mechanism(bodies, joints, (0.0, -self.gravity))
 
@@ -156,13 +152,12 @@ class SpinningRing(PlacedScene):
     def placement(self, times: Array) -> tuple[Array, Array, Array]:
         inner = self.length / (2 * math.tan(math.pi / self.links))  # from the ring's centre to the middle of a chord
         where = 2 * math.pi * np.arange(self.links) / self.links + self.rate * times[:, None]
-        outwards = np.stack([np.cos(where), np.sin(where)], axis=-1)
-        onwards = np.stack([-np.sin(where), np.cos(where)], axis=-1)
-        zero = np.zeros_like(where)[..., None]
+        outwards, zero = np.stack([np.cos(where), np.sin(where)], axis=-1), np.zeros_like(where)
+        onwards = perpendicular(outwards)
         return (
-            np.concatenate([inner * outwards, where[..., None] + math.pi / 2], axis=-1),
-            np.concatenate([inner * self.rate * onwards, zero + self.rate], axis=-1),
-            np.concatenate([-inner * self.rate**2 * outwards, zero], axis=-1),
+            placed(inner * outwards, where + math.pi / 2),
+            placed(inner * self.rate * onwards, zero + self.rate),
+            placed(-inner * self.rate**2 * outwards, zero),
         )
 
     def mechanism(self) -> Mechanism:

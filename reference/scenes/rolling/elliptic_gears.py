@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -12,19 +12,19 @@ from numpy.typing import ArrayLike
 from reference.checks import Positive, validated
 from reference.joints import Drive, Pin, bodies_of
 from reference.mechanism import Mechanism
-from reference.plane import rotation_acceleration, rotation_velocity
+from reference.plane import swung
 from reference.rolling.closed_curves import Ellipse
 from reference.rolling.curves import Array
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.rows import undetermined
-from reference.scene import Scene
+from reference.scene import PlacedScene
 from reference.trajectory import Trajectory
-from reference.validators import from_to, of_shape
+from reference.validators import from_to
 
 
 @dataclass(frozen=True)
-class EllipticGears(Scene):
+class EllipticGears(PlacedScene):
     """The first gear turns at a constant rate about a focus at the origin, the second gear about a focus at (2a, 0).
 
     The distances from the contact to the two pins add up to 2a, so the contact is on the line of the pins. The angles
@@ -77,25 +77,20 @@ class EllipticGears(Scene):
         receding = -(near**2) * e * np.sin(first) / semi_latus_rectum * self.turning_rate
         return -self.turning_rate * near / far, -self.turning_rate * 2 * self.major / far**2 * receding
 
-    @validated
-    def kinematics(self, t: Annotated[Array, of_shape("times")]) -> tuple[Array, Array, Array]:
-        """Poses, twists and accelerations (times, 2, 3)."""
-        first = self.start_angle + self.turning_rate * t
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
+        first = self.start_angle + self.turning_rate * times
         rate, angular_acceleration = self.second_rate(first)
-        pose, twist, acceleration = np.empty((3, len(t), 2, 3))
-        for gear, pin, angle, omega, alpha in (
-            (0, 0.0, first, np.full(t.shape, self.turning_rate), np.zeros(t.shape)),
-            (1, 2 * self.major, self.second_angle(first), rate, angular_acceleration),
-        ):
-            arm = -self._focus[0] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-            pose[:, gear] = np.column_stack([arm[:, 0] + pin, arm[:, 1], angle])
-            twist[:, gear] = np.column_stack([rotation_velocity(omega, arm), omega])
-            acceleration[:, gear] = np.column_stack([rotation_acceleration(omega, alpha, arm), alpha])
+        angle = np.stack([first, self.second_angle(first)], axis=-1)
+        rates = np.stack([np.full(times.shape, self.turning_rate), rate], axis=-1)
+        accelerations = np.stack([np.zeros(times.shape), angular_acceleration], axis=-1)
+        arm = -self._focus[0] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        pose, twist, acceleration = swung(arm, angle, rates, accelerations)
+        pose[:, 1, 0] += 2 * self.major  # the second pin
         return pose, twist, acceleration
 
     def mechanism(self) -> Mechanism:
         shape = Ellipse(self.major, self._minor)
-        pose, twist, _ = self.kinematics(np.zeros(1))
+        pose, twist, _ = self.placement(np.zeros(1))
         inertia = self.mass * (self.major**2 + self._minor**2) / 4
         bodies = bodies_of(("first", "second"), (self.mass,) * 2, (inertia,) * 2, pose[0], twist[0])
         # At theta_1 = theta_2 = 0 the far end of the first ellipse touches the near end of the second ellipse.
@@ -111,8 +106,6 @@ class EllipticGears(Scene):
         )
 
     def _motion(self, times: Array) -> Trajectory:
-        pose, twist, acceleration = self.kinematics(times)
-        mechanism = self.mechanism()
-        reaction = mechanism.reaction(pose, acceleration)
-        loose = undetermined(mechanism.rows(pose), mechanism.length_scale)
-        return Trajectory(t=times, pose=pose, twist=twist, reaction=np.where(loose, np.nan, reaction))
+        motion, mechanism = super()._motion(times), self._mechanism
+        loose = undetermined(mechanism.rows(motion.pose), mechanism.length_scale)
+        return replace(motion, reaction=np.where(loose, np.nan, motion.reaction))

@@ -15,6 +15,7 @@ import numpy as np
 
 from reference.checks import Positive
 from reference.mechanism import Body, Mechanism
+from reference.plane import placed
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
 from reference.rolling.kinematics import Rolling
@@ -96,14 +97,8 @@ class RollingScene(Scene):
     def _motion(self, times: Array) -> Trajectory:
         law = self.motion_law
         theta, rate = law.states(times)
-        velocity = law.rolling.velocity(theta, rate)
-        tangent, normal = law.forces(times)
-        return Trajectory(
-            t=times,
-            pose=law.rolling.pose(theta)[:, None, :],
-            twist=np.concatenate([velocity, rate[:, None]], axis=-1)[:, None, :],
-            reaction=np.stack([tangent, normal], axis=-1),
-        )
+        twist = placed(law.rolling.velocity(theta, rate), rate)
+        return Trajectory(times, law.rolling.pose(theta)[:, None], twist[:, None], np.stack(law.forces(times), axis=-1))
 
 
 @dataclass(frozen=True)
@@ -251,16 +246,10 @@ class DiscInHole(RollingScene):
         theta = rolling.theta + self.start_rate * times
         contact = rolling.contact(theta)
         force = self.mass * rolling.acceleration(theta, self.start_rate, 0.0)
-        velocity = rolling.velocity(theta, self.start_rate)
-        rate = np.full((len(times), 1), self.start_rate)
-        return Trajectory(
-            t=times,
-            pose=np.concatenate([contact.point + contact.arm, theta[:, None]], axis=-1)[:, None, :],
-            twist=np.concatenate([velocity, rate], axis=-1)[:, None, :],
-            reaction=np.stack(
-                [np.sum(force * contact.tangent, axis=-1), np.sum(force * contact.normal, axis=-1)], axis=-1
-            ),
-        )
+        pose = placed(contact.point + contact.arm, theta)
+        twist = placed(rolling.velocity(theta, self.start_rate), np.full(len(times), self.start_rate))
+        reaction = [np.sum(force * direction, axis=-1) for direction in (contact.tangent, contact.normal)]
+        return Trajectory(times, pose[:, None], twist[:, None], np.stack(reaction, axis=-1))
 
 
 @dataclass(frozen=True)

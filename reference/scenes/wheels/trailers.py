@@ -20,7 +20,7 @@ from reference.numerics.integration import Integrated, error_of, integrate
 from reference.numerics.roots import first_below
 from reference.validators import NOT_FINITE, Array, Rule, from_to, of_shape
 
-Input = float | Callable[[Array], Array]
+Input = float | Callable[[Array], Array]  # a constant, or a function of times
 
 # Argument m s up to which the direct formulas with hyperbolic functions have no cancellation.
 SMALL_ARGUMENT = 0.5
@@ -130,6 +130,10 @@ class Tow(Valid):
         return self.hitch(distance) - self.length * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
 
 
+def input_at(value: Input, times: Array) -> Array:
+    return np.asarray(value(times) if callable(value) else np.full(np.shape(times), value))
+
+
 @validated
 def towed(v: Complexes, w: Complexes, bend: Complexes, hitch: float, length: Positive) -> tuple[Any, Any]:
     """Speed [m/s] and turning rate [rad/s] of a trailer's axle from the axle ahead and the joint angle `bend` [rad]."""
@@ -221,9 +225,8 @@ class CarWithTrailers(Valid):
             )
 
         def inputs(time: Array) -> tuple[Array, Array]:
-            v = speed(time) if callable(speed) else np.full(np.shape(time), speed)
-            angle = steering(time) if callable(steering) else np.full(np.shape(time), steering)
-            return np.asarray(v), self.turning_rate(v, np.asarray(angle))
+            v = input_at(speed, time)
+            return v, self.turning_rate(v, input_at(steering, time))
 
         def rates(state: Array) -> Array:
             v, w = inputs(state[..., 0])

@@ -12,7 +12,6 @@ direction beta (wheel to kingpin) relative to the cart, w + beta' = (x w cos bet
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -28,14 +27,13 @@ from reference.numerics.calculus import Antiderivative
 from reference.numerics.integration import Integrated, error_of, integrate
 from reference.numerics.roots import solve_increasing
 from reference.plane import COMPLEX_STEP, components
-from reference.scene import Scene
-from reference.scenes.wheels.trailers import Tow, towed
-from reference.trajectory import Trajectory
+from reference.scene import PlacedScene
+from reference.scenes.wheels.trailers import Input, Tow, input_at, towed
 from reference.validators import Array
 
 
 @dataclass(frozen=True)
-class CarAndTrailer(Scene):
+class CarAndTrailer(PlacedScene):
     """A coasting car with locked steering, and its trailer.
 
     For the car and the trailer: masses [kg], inertias [kg m^2] and centres of mass [m] ahead of the axle. wheelbase
@@ -163,14 +161,9 @@ class CarAndTrailer(Scene):
         pose = np.concatenate([np.stack([car, trailer], axis=1), headings[..., None]], axis=-1)
         return pose, per_way * speeds, acceleration
 
-    def _motion(self, times: Array) -> Trajectory:
+    def placement(self, times: Array) -> tuple[Array, Array, Array]:
         way = self._way(times)
-        speed = self.speed * np.sqrt(self.apparent_mass(0.0) / self.apparent_mass(way))
-        pose, twist, acceleration = self._moving(way, speed)
-        return Trajectory(times, pose, twist, self.mechanism().reaction(pose, acceleration))
-
-
-Input = float | Callable[[Array], Array]
+        return self._moving(way, self.speed * np.sqrt(self.apparent_mass(0.0) / self.apparent_mass(way)))
 
 
 @dataclass(frozen=True)
@@ -211,9 +204,8 @@ class Casters(Valid):
 
         def rates(state: Array) -> Array:
             time = state[..., 0]
-            u = speed(time) if callable(speed) else np.full(np.shape(time), speed)
-            w = turning_rate(time) if callable(turning_rate) else np.full(np.shape(time), turning_rate)
-            relative = self.turning_rates(state[..., 1:], u, w) - np.asarray(w)[..., None]
+            w = input_at(turning_rate, time)
+            relative = self.turning_rates(state[..., 1:], input_at(speed, time), w) - w[..., None]
             return np.concatenate([np.ones((*time.shape, 1)), relative], axis=-1)
 
         first = np.array([0.0, *angles])
