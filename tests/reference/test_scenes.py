@@ -16,9 +16,9 @@ import pytest
 from engines.lagrange import Lagrange
 from reference.joints import Drive
 from reference.mechanism import Mechanism
-from reference.scene import Scene
+from reference.scene import PlacedScene, Scene
 from reference.scenes.catalogue import SCENES
-from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.four_bar.scenes import DrivenFourBar, FourBarScene, FreeFourBar
 from reference.scenes.n_four_bar import NFourBar
 from reference.scenes.pendulum.link import BarPendulum
 from reference.scenes.pendulum.scenes import LinkPendulum
@@ -156,6 +156,20 @@ def test_a_scenes_motion_starts_at_the_mechanisms_state_and_satisfies_its_joints
 def test_a_scenes_reactions_satisfy_newtons_law(each: Scene) -> None:
     mechanism, motion, _, change = known(each)
     assert off_newton(mechanism, motion, change) < NEWTON
+
+
+def accelerations_of(each: Scene, t: np.ndarray) -> np.ndarray | None:
+    """The accelerations from which the scene computes its reactions, or None without such accelerations."""
+    if isinstance(each, FourBarScene):
+        return each._bodies(each._angles(t))[2]  # pyright: ignore[reportAttributeAccessIssue]
+    return each.placement(t)[2] if isinstance(each, PlacedScene) else None
+
+
+@pytest.mark.parametrize("each", [each for each in ALL if isinstance(each, FourBarScene | PlacedScene)], ids=name_of)
+def test_a_scenes_accelerations_are_derivatives_of_its_twists(each: Scene) -> None:
+    mechanism, motion, _, change = known(each)
+    off = np.abs((present(accelerations_of(each, motion.t)) - change) / mechanism.pose_unit).max()
+    assert off < 1e-9 * max(np.abs(change / mechanism.pose_unit).max(), fastest(mechanism, motion) ** 2)
 
 
 @pytest.mark.parametrize("each", [each for each in ALL if each.name != "n_four_bar_40"], ids=name_of)
