@@ -12,7 +12,7 @@ import tomllib
 import types
 import xml.etree.ElementTree as xml
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
@@ -130,14 +130,14 @@ def test_a_view_with_a_display_steps_the_scene_in_mujocos_window(here, monkeypat
     assert not list(here.iterdir())
 
 
-BAD = tomllib.loads(Path(__file__).with_name("bad_models.toml").read_text(encoding="utf-8"))
+BAD: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_name("bad_models.toml").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("word", BAD)
 def test_a_bad_model_is_refused_in_one_sentence(tmp_path, word):
     bad, name = BAD[word], word.split(":")[0]
     if "text" in bad:
-        text = {"FOUR_BAR": FOUR_BAR, "PENDULUM": PENDULUM}.get(bad["text"], bad["text"])
+        text = str({"FOUR_BAR": FOUR_BAR, "PENDULUM": PENDULUM}.get(bad["text"], bad["text"]))
         (tmp_path / name).write_text(text.replace(*bad.get("replaced", ("", ""))))
     answer = run_check(CheckRequest(word, str(tmp_path), 0.5, 1e-4))
     assert isinstance(answer, Refused)
