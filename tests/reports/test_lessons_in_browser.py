@@ -102,34 +102,21 @@ def test_an_answered_experiment_shows_its_run_again_when_the_reader_returns(open
     assert number.inner_text() == "50 ms"
 
 
-@pytest.mark.parametrize(
-    ("blocked", "place", "words"),
-    [
-        (
-            "**/packages/mujoco.*",
-            ".status",
-            "MuJoCo: its file could not be loaded. Check the network or the browser's blocker, then reload the page. "
-            "The picture shows the stored motion of Python.",
-        ),
-        (
-            "**/live/*.json",
-            ".status",
-            "The engines could not be run: the data of this motion could not be loaded. Check",
-        ),
-        (
-            "**/worker.js",
-            ".status",
-            "The engines could not be run: their script could not be loaded. Check the network",
-        ),
-    ],
-)
-def test_a_blocked_download_has_a_readable_message(chromium, address, blocked, place, words):
+BLOCKED = {
+    "**/packages/mujoco.*": "MuJoCo: its file could not be loaded. Check the network or the browser's blocker, then "
+    "reload the page. The picture shows the stored motion of Python.",
+    "**/live/*.json": "The engines could not be run: the data of this motion could not be loaded. Check",
+    "**/worker.js": "The engines could not be run: their script could not be loaded. Check the network",
+}
+
+
+@pytest.mark.parametrize("blocked", BLOCKED)
+def test_a_blocked_download_has_a_readable_message(chromium, address, blocked):
     page = new_page(chromium)
     page.route(blocked, lambda route: route.abort())
     page.goto(f"{address}lessons/four_bar.html")
-    page.wait_for_function(
-        "([place, words]) => document.querySelector(place).innerText.includes(words)", arg=[place, words]
-    )
+    shown = "words => document.querySelector('.status').innerText.includes(words)"
+    page.wait_for_function(shown, arg=BLOCKED[blocked])
     text = page.inner_text("#lesson figure")
     assert "http" not in text
     assert "undefined" not in text
