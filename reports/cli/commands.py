@@ -31,7 +31,9 @@ COMMANDS = {
     "export": ("export:export", "Write a scene as a file that runs without this suite, with its truth in comments."),
     "view": ("export:view", "Look at a scene: in an engine's viewer, or else as an animation in a file."),
 }
-EARLY = ("run", "search")  # Worker processes of these commands import engines while this process imports the command.
+# The fork server imports engines and these modules for all workers while this process imports the command. In `run` few
+# cells need numba, whose import takes longer than most cells.
+EARLY = {"run": ("scipy.integrate", "llvmlite.binding"), "search": ("scipy.integrate", "numba")}
 LOOK: Any = {"add_completion": False, "pretty_exceptions_enable": False, "rich_markup_mode": None}
 
 
@@ -63,7 +65,7 @@ def invoke(arguments: Sequence[str]) -> int:
                 if words[0] in EARLY and "--help" not in words:
                     from reports.run import worker  # Other commands start sooner without multiprocessing.
 
-                    worker.start_early("numba")
+                    worker.start_early(*EARLY[words[0]])
                 parser, called, words = command(words[0]), f"crosscheck {words[0]}", words[1:]
             else:
                 parser, called = program(), "crosscheck"
