@@ -221,6 +221,27 @@ def test_a_drawn_motion_gives_two_shapes_to_download(opened, lesson, tmp_path):
 
 
 @pytest.mark.parametrize("lesson", [marked("cam")])
+def test_the_keyboard_draws_a_motion(opened, lesson):
+    page = opened(f"lessons/{lesson}.html", viewport=TALL)
+    picture = page.get_by_role("application", name="The path of a point, which a pointer draws.")
+    picture.focus()
+    page.keyboard.press("PageUp")
+    page.keyboard.press("PageUp")
+    begin = page.inner_text(".cam .count")
+    assert begin.startswith("The path at 30° is at (0.43, 0.10) m.")  # (0.5 cos 30°, 0.2 sin 30°) of the ellipse
+    for key in ("ArrowUp", "ArrowUp", "ArrowLeft"):
+        page.keyboard.press(key)
+    moved = page.inner_text(".cam .count")
+    assert moved.startswith("The path at 30° is at (0.41, 0.14) m.")
+    assert "The moving shape rolls on the fixed one" in moved
+    assert moved.split("m. ", 1)[1] != begin.split("m. ", 1)[1]  # both shapes have another size
+    page.keyboard.press("PageDown")
+    assert page.inner_text(".cam .count").startswith("The path at 15° is at")
+    linked = opened(f"lessons/{lesson}.html{page.evaluate('location.hash')}", viewport=TALL)
+    assert linked.inner_text(".cam .count") == moved.split("m. ", 1)[1]
+
+
+@pytest.mark.parametrize("lesson", [marked("cam")])
 def test_a_motion_about_one_point_gives_no_shapes_and_a_wrong_link_changes_nothing(opened, lesson):
     page = opened(f"lessons/{lesson}.html#set&part=3&scene=0&state=0,0,0,1,0,0,0,0,1", viewport=TALL)
     assert "0.600 m wide" in page.inner_text(".cam .count")  # 2 (0.5 - 0.2) m, of the ellipse at the start

@@ -11,6 +11,7 @@ import { beginAll, remembered } from "./widget.js";
 const HARMONICS = 3; // highest frequency of a drawn path, which makes the shapes smooth
 const POINTS = 360; // points of each shape
 const FEWER = 120; // points of the shapes among which a number of turns is selected; with 360 points a slow phone would be blocked for 60 ms
+const STEP = { turn: 15, move: 0.02 }; // a press of a key [degrees, m]
 const SMALL = 1e-9; // an extent of the path of the centre that counts as zero [m]
 const ROUNDING = 1e-18; // a product of two areas [m^4]: a curve that is traced twice touches itself to rounding and does not cross itself
 
@@ -30,6 +31,16 @@ export function seriesOf(drawn) {
     ((k ? 2 : 1) / count) * even.reduce((sum, point, index) => sum + point[axis] * of((2 * Math.PI * k * index) / count), 0)));
   const frequencies = [...Array(HARMONICS + 1).keys()];
   return { cosines: frequencies.map((k) => part(Math.cos, k)), sines: frequencies.map((k) => part(Math.sin, k)) };
+}
+
+/** Return a closed path whose point at the angle `t` is moved by `by` [m]. The points near it follow; the weights are those of
+ * Fejér's kernel, which is nowhere negative. @param {Series} series @param {number} t [rad] @param {Point} by @returns {Series} */
+export function pulled(series, t, by) {
+  const added = (/** @type {Point[]} */ old, /** @type {(angle: number) => number} */ of) => Array.from({ length: HARMONICS + 1 }, (_, k) => {
+    const weight = ((k ? 2 : 1) * (1 - k / (HARMONICS + 1)) * of(k * t)) / (HARMONICS + 1);
+    return /** @type {Point} */ ([0, 1].map((axis) => (old[k]?.[axis] ?? 0) + weight * by[axis]));
+  });
+  return { cosines: added(series.cosines, Math.cos), sines: added(series.sines, Math.sin) };
 }
 
 /** Return both centrodes of a body whose point O' follows the path once while the body turns `turn` times.
@@ -113,7 +124,7 @@ export const MOTIONS = {
 /** @param {HTMLElement} place */
 function begin(place) {
   place.innerHTML =
-    '<svg class="lot" viewBox="-1.2 -.9 2.4 1.8" role="img" aria-label="Draw the path of a point; the two shapes appear."><g transform="scale(1 -1)"><path class="space"/><path class="path"/>' +
+    '<svg class="lot" viewBox="-1.2 -.9 2.4 1.8" tabindex="0" role="application" aria-label="The path of a point, which a pointer draws. Page Up and Page Down select a place on it, the arrow keys move the path there."><g transform="scale(1 -1)"><path class="space"/><path class="path"/>' +
     '<g class="moving"><path class="body"/><path class="mark" d="M0 0H.2"/><circle class="nose" r=".03"/></g><circle class="touch" r=".025"/></g></svg>' +
     `<div class="controls">${Object.keys(MOTIONS).map((name) => `<button type="button" data-motion="${name}">${name}</button>`).join("")}` +
     '<label>the body turns <select><option value="1">once</option><option value="-1">once clockwise</option><option value="2">twice</option><option value="-2">twice clockwise</option></select></label>' +
@@ -128,8 +139,10 @@ function begin(place) {
   /** @type {Point[]} */
   let drawn = [];
 
+  const selected = () => Math.round((Number(angle.value) / 360) * POINTS);
+
   function turnTo() {
-    const index = Math.round((Number(angle.value) / 360) * POINTS);
+    const index = selected();
     put(find(".moving"), ...shapes.path[index], shapes.angles[index]);
     put(find(".touch"), ...shapes.space[index], 0);
   }
@@ -179,6 +192,19 @@ function begin(place) {
     if (extent(drawn) > 0.1) take(seriesOf(drawn));
     else make();
     stored();
+  });
+  drawing.addEventListener("keydown", (event) => {
+    const turn = { PageUp: STEP.turn, PageDown: -STEP.turn }[event.key];
+    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!turn && !by) return;
+    event.preventDefault();
+    if (turn) angle.value = String((Number(angle.value) + turn + 360) % 360);
+    if (by) {
+      take(pulled(series, (2 * Math.PI * selected()) / POINTS, /** @type {Point} */ (by.map((each) => STEP.move * each))));
+      stored();
+    } else make();
+    const [x, y] = shapes.path[selected()];
+    /** @type {HTMLElement} */ (place.querySelector(".count")).prepend(`The path at ${angle.value}° is at (${x.toFixed(2)}, ${y.toFixed(2)}) m. `);
   });
   for (const button of place.querySelectorAll("button")) {
     const { motion, file } = button.dataset;
