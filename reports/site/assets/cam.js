@@ -1,7 +1,7 @@
 // @ts-check
 /** Two shapes from a drawn motion: the reader draws the path of a point of a body that turns once, and both centrodes follow. */
 
-import { placed, pointerIn, put } from "./motion.js";
+import { ARROWS, onDrag, placed, pointerIn, put } from "./motion.js";
 import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {import("./motion.js").Point} Point
@@ -176,26 +176,23 @@ function begin(place) {
   });
   const stored = () => keep([Number(turns.value), ...series.cosines.flat(), ...series.sines.flat()]);
   const hand = (/** @type {PointerEvent} */ event) => pointerIn(drawing.firstElementChild, event);
-  drawing.addEventListener("pointerdown", (event) => {
-    drawing.setPointerCapture(event.pointerId);
-    event.preventDefault();
-    drawn = [hand(event)];
-  });
-  drawing.addEventListener("pointermove", (event) => {
-    if (!drawing.hasPointerCapture(event.pointerId)) return;
-    const now = hand(event);
-    const last = drawn[drawn.length - 1];
-    if (Math.hypot(now[0] - last[0], now[1] - last[1]) > 0.005) drawn.push(now);
-    find(".path").setAttribute("d", line(drawn));
-  });
-  drawing.addEventListener("pointerup", () => {
-    if (extent(drawn) > 0.1) take(seriesOf(drawn));
-    else make();
-    stored();
+  onDrag(drawing, {
+    begin: (event) => void (drawn = [hand(event)]),
+    move(event) {
+      const now = hand(event);
+      const last = drawn[drawn.length - 1];
+      if (Math.hypot(now[0] - last[0], now[1] - last[1]) > 0.005) drawn.push(now);
+      find(".path").setAttribute("d", line(drawn));
+    },
+    end() {
+      if (extent(drawn) > 0.1) take(seriesOf(drawn));
+      else make();
+      stored();
+    },
   });
   drawing.addEventListener("keydown", (event) => {
     const turn = { PageUp: STEP.turn, PageDown: -STEP.turn }[event.key];
-    const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const by = ARROWS[event.key];
     if (!turn && !by) return;
     event.preventDefault();
     if (turn) angle.value = String((Number(angle.value) + turn + 360) % 360);

@@ -1,6 +1,8 @@
 // @ts-check
 /** The controls of a lesson, the numbers in the text that set them, and the link that stores them. */
 
+import { onDrag } from "./motion.js";
+
 /** @typedef {import("./live_data.js").Setting} Setting */
 
 const LINK = "#set&";
@@ -112,14 +114,9 @@ export class Form {
       this.onchange();
     };
     let [from, begin] = [0, 0];
-    number.addEventListener("pointerdown", (event) => {
-      [from, begin] = [event.clientX, now()];
-      number.setPointerCapture(event.pointerId);
-      event.preventDefault();
-      number.focus();
-    });
-    number.addEventListener("pointermove", (event) => {
-      if (number.hasPointerCapture(event.pointerId)) to(begin + Math.round((event.clientX - from) / 25));
+    onDrag(number, {
+      begin: (event) => void ([from, begin] = [event.clientX, now()]),
+      move: (event) => to(begin + Math.round((event.clientX - from) / 25)),
     });
     number.addEventListener("keydown", (event) => {
       const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, Home: -1000, End: 1000 }[event.key];

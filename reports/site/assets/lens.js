@@ -67,7 +67,7 @@ export class Lens {
       group.append(svg("path", { class: mark === 2 && joint.unit === "m" ? "spring" : "gap", d: zigzag(middle, middle, middle + factor * x, middle - factor * y, mark === 2 && joint.unit === "m") }));
       group.append(svg("circle", { class: "dot", cx: middle + factor * x, cy: middle - factor * y, r: 5 }));
       parts.push(group);
-      return `${label} ${told(away)} ${joint.unit}`;
+      return `${label} ${told(away).replace("e-", "e\u2011")} ${joint.unit}`;
     });
     const bar = 10 ** Math.floor(Math.log10((0.5 * SIZE) / (factor || 1)));
     if (factor) {

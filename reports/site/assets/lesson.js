@@ -123,9 +123,9 @@ async function show(answer, play, ways) {
   find(".springs").textContent = springWords(spring, answer);
   player.load(answer);
   await pause();
-  player.chartErrors(answer);
+  lens.load(answer); // the width of the chart depends on whether there is a lens
   await pause();
-  lens.load(answer);
+  player.chartErrors(answer);
   await pause();
   lens.scale();
   for (const name in NAMES) {

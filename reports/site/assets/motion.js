@@ -32,6 +32,31 @@ export function pointerIn(part, { clientX, clientY }) {
   return [x, y];
 }
 
+/** The directions of the arrow keys. @type {Record<string, Point>} */
+export const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** Call `begin` for a pointer that is pressed on an element, `move` while it is held, and `end` when it is released. `begin`
+ * may return false: then the pointer is not held. @param {HTMLElement|SVGElement} element
+ * @param {{begin: (event: PointerEvent) => boolean|void, move: (event: PointerEvent) => void, end?: () => void}} calls */
+export function onDrag(element, { begin, move, end = () => {} }) {
+  let held = false;
+  const release = () => {
+    if (held) end();
+    held = false;
+  };
+  element.addEventListener("pointerdown", (event) => {
+    if (begin(event) === false) return;
+    held = true;
+    element.setPointerCapture(event.pointerId);
+    event.preventDefault();
+    element.focus();
+  });
+  element.addEventListener("pointermove", (event) => {
+    if (held) move(event);
+  });
+  for (const name of ["pointerup", "pointercancel"]) element.addEventListener(name, release);
+}
+
 /** Return the pose [x, y, angle] at an instant, or NaN.
  * @param {ArrayLike<number|null>} pose @param {number} bodies @param {number} frame @param {number} body
  * @returns {[number, number, number]} */

@@ -1,7 +1,7 @@
 // @ts-check
 /** A skate that the reader turns and slides by hand to a place straight sideways, and the commutator of both moves. */
 
-import { placed, pointerIn, put } from "./motion.js";
+import { ARROWS, onDrag, placed, pointerIn, put } from "./motion.js";
 import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {[number, number, number]} Pose x, y [m] and angle [rad] of the blade
@@ -107,28 +107,25 @@ function begin(place) {
     });
   }
   drawing.addEventListener("keydown", (event) => {
-    const by = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const by = ARROWS[event.key];
     if (!by) return;
     event.preventDefault();
-    drive({ turn: by[0] * STEP.turn, slide: by[1] * STEP.slide });
+    drive({ turn: -by[0] * STEP.turn, slide: by[1] * STEP.slide });
     stored();
   });
   // A dragged nose follows the pointer: its motion along the blade slides the skate, its motion across turns the skate.
-  drawing.addEventListener("pointerdown", (event) => {
-    drawing.setPointerCapture(event.pointerId);
-    event.preventDefault();
-    drawing.focus();
+  onDrag(drawing, {
+    begin() {},
+    move(event) {
+      const [x, y] = pointerIn(drawing.firstElementChild, event);
+      const [ahead, across] = placed([0, 0, -pose[2]], [x - pose[0], y - pose[1]]);
+      const along = ahead - NOSE;
+      // One kind of move at a time, so that the moves can be counted.
+      if (Math.abs(across) > 2 * Math.abs(along)) drive({ turn: Math.atan2(across, NOSE), slide: 0 });
+      else if (Math.abs(along) > 2 * Math.abs(across)) drive({ turn: 0, slide: Math.max(-0.1, Math.min(0.1, along)) });
+    },
+    end: stored,
   });
-  drawing.addEventListener("pointermove", (event) => {
-    if (!drawing.hasPointerCapture(event.pointerId)) return;
-    const [x, y] = pointerIn(drawing.firstElementChild, event);
-    const [ahead, across] = placed([0, 0, -pose[2]], [x - pose[0], y - pose[1]]);
-    const along = ahead - NOSE;
-    // One kind of move at a time, so that the moves can be counted.
-    if (Math.abs(across) > 2 * Math.abs(along)) drive({ turn: Math.atan2(across, NOSE), slide: 0 });
-    else if (Math.abs(along) > 2 * Math.abs(across)) drive({ turn: 0, slide: Math.max(-0.1, Math.min(0.1, along)) });
-  });
-  drawing.addEventListener("pointerup", stored);
   show();
 }
 

@@ -3,7 +3,7 @@
 
 import { errorChart, svg } from "./chart.js";
 import { Lens } from "./lens.js";
-import { UNITS, placed, pointerIn, poseAt, put, told } from "./motion.js";
+import { ARROWS, UNITS, onDrag, placed, pointerIn, poseAt, put, told } from "./motion.js";
 import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
@@ -177,24 +177,22 @@ export class Player {
     /** @type {{body: number, point: number[]}|null} */
     let held = null;
     const hand = (/** @type {PointerEvent} */ event) => pointerIn(this.stage.querySelector(".world"), event);
-    frame_.addEventListener("pointerdown", (event) => {
+    const press = (/** @type {PointerEvent} */ event) => {
       const take = this.take;
-      if (!take) return;
+      if (!take) return false;
       const wanted = hand(event);
       const near = take.bodies.map((_, body) => poseAt(take.exact.pose, take.bodies.length, this.frame, body)).flatMap((pose, body) => {
         const own = take.joints.flatMap(({ first, second, firstPoint, secondPoint }) => [...(first === body ? [firstPoint] : []), ...(second === body ? [secondPoint] : [])]);
         return [[0, 0], ...own].map((point) => ({ body, point, away: Math.hypot(...placed(pose, point).map((value, axis) => value - wanted[axis])) }));
       }).sort((a, b) => a.away - b.away)[0];
-      if (take.mechanism ? near.away > 0.15 * take.size || !pull(near.body, near.point, wanted) : near.away > take.size) return;
+      if (take.mechanism ? near.away > 0.15 * take.size || !pull(near.body, near.point, wanted) : near.away > take.size) return false;
       if (!take.mechanism) { // the point of the body at the pointer
         const [x, y, angle] = poseAt(take.exact.pose, take.bodies.length, this.frame, near.body);
         near.point = placed([0, 0, -angle], [wanted[0] - x, wanted[1] - y]);
       }
       this.stop();
       held = near;
-      frame_.setPointerCapture(event.pointerId);
-      event.preventDefault();
-    });
+    };
     /** @type {Float64Array|null} */
     let pose = null;
     const follow = (/** @type {{body: number, point: number[]}} */ { body, point }, /** @type {number[]} */ wanted) => {
@@ -208,11 +206,8 @@ export class Player {
       }
       this.stage.querySelector(".overlay")?.replaceChildren();
     };
-    frame_.addEventListener("pointermove", (event) => {
-      if (held && this.take) follow(held, hand(event));
-    });
     frame_.addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      const by = ARROWS[event.key];
       const { take } = this;
       if (!take?.mechanism || !by) return;
       event.preventDefault();
@@ -227,8 +222,7 @@ export class Player {
       if (held && this.take?.mechanism) release();
       held = pose = null;
     };
-    frame_.addEventListener("pointerup", end);
-    frame_.addEventListener("pointercancel", end);
+    onDrag(frame_, { begin: press, move: (event) => held && follow(held, hand(event)), end });
     frame_.addEventListener("keyup", end);
   }
 }
