@@ -337,7 +337,8 @@ function begin() {
     }
   }, { rootMargin: matchMedia("(max-width: 52rem)").matches ? "-48% 0px -52% 0px" : "-28% 0px -72% 0px" });
   for (const part of parts) looking.observe(part);
-  if (!linked && parts[0] instanceof HTMLElement) stageOf(parts[0], {}, true);
+  // The load event would lay out these changes together with the page.
+  if (!linked) pause().then(() => !waiting && !busy && parts[0] instanceof HTMLElement && stageOf(parts[0], {}, true));
   addEventListener("hashchange", restored);
   Object.assign(window, { crosscheck: { ask, form, setting: () => form.setting(start) } });
 }

@@ -2,8 +2,12 @@
 (() => {
   const root = document.documentElement;
   root.classList.add("scripts"); // without this class, the style sheet hides controls
-  // The first frame has the picture; the texts follow, since the layout of all of it at once would block a slow phone.
-  requestAnimationFrame(() => setTimeout(() => root.classList.add("drawn")));
+  // The first frame has the picture, the second one its legend, the third one the texts: all at once would block a slow phone.
+  const frame = (/** @type {() => void} */ then) => requestAnimationFrame(() => setTimeout(then));
+  frame(() => {
+    root.classList.add("drawn");
+    frame(() => root.classList.add("written"));
+  });
   /** Use the storage; without access to it the choice is valid for this page only. @param {(store: Storage) => void} use */
   const kept = (use) => {
     try {
