@@ -36,7 +36,7 @@ export function pointerIn(part, { clientX, clientY }) {
 export const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /** Call `begin` for a pointer that is pressed on an element, `move` while it is held, and `end` when it is released. `begin`
- * may return false: then the pointer is not held. @param {HTMLElement|SVGElement} element
+ * may return false: then the pointer is not held. @param {GlobalEventHandlers & Element & HTMLOrSVGElement} element
  * @param {{begin: (event: PointerEvent) => boolean|void, move: (event: PointerEvent) => void, end?: () => void}} calls */
 export function onDrag(element, { begin, move, end = () => {} }) {
   let held = false;
@@ -54,7 +54,7 @@ export function onDrag(element, { begin, move, end = () => {} }) {
   element.addEventListener("pointermove", (event) => {
     if (held) move(event);
   });
-  for (const name of ["pointerup", "pointercancel"]) element.addEventListener(name, release);
+  for (const name of /** @type {const} */ (["pointerup", "pointercancel"])) element.addEventListener(name, release);
 }
 
 /** Return the pose [x, y, angle] at an instant, or NaN.

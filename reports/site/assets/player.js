@@ -192,6 +192,7 @@ export class Player {
       }
       this.stop();
       held = near;
+      return true;
     };
     /** @type {Float64Array|null} */
     let pose = null;
