@@ -174,9 +174,10 @@ def _written_deviations() -> dict[str, list[dict[str, Any]]]:
 
 
 def deviations(page: str) -> dict[tuple[str, str, str], Deviation]:
-    """The known deviations of a page from `deviations.toml`, by (scene, method, check)."""
+    """The known deviations of a page from `deviations.toml`, by (scene, method, check). A page without an
+    entry, such as a third party's page, has no known deviations."""
     by_check: dict[tuple[str, str, str], Deviation] = {}
-    for entry in _written_deviations()[page]:
+    for entry in _written_deviations().get(page, ()):
         scenes = dict(entry)
         reason, rounding = scenes.pop("reason"), scenes.pop("rounding", False)
         for scene, methods in scenes.items():

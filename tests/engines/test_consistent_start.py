@@ -83,6 +83,12 @@ def test_velocities_that_violate_joints_become_the_nearest_consistent_ones(make)
     assert f"({energy:.3g} J" in note.reason
 
 
+def test_a_consistent_start_is_not_changed():
+    reading = read(linkage(A, B, C, D)[0])
+    assert not reading.mechanism.twist.any()
+    assert not reading.notes
+
+
 @pytest.mark.parametrize(
     ("rates", "named"), [((1.0, 2.0), ("SimpleMotor 1, SimpleMotor 2",)), ((3.0,), ("SimpleMotor 1", "PivotJoint"))]
 )

@@ -41,6 +41,11 @@ def largest(values: NDArray[np.float64]) -> float:
     return float(np.abs(values).max())
 
 
+def test_the_default_settings_are_those_of_pymunk():
+    assert DEFAULT.iterations == 10
+    assert DEFAULT.error_bias == pytest.approx(0.9**60, rel=1e-5)  # pymunk rounds 0.1.
+
+
 def test_prescribed_motions_need_no_constraints():
     # The crank and the angle of the block are prescribed. Only pins and a groove are constraints.
     for mechanism, rows in ((FREE, 8), (DRIVEN, 6), (DrivenSliderCrank().mechanism(), 5)):

@@ -23,6 +23,7 @@ from engines.pymunk import DEFAULT as PYMUNK
 from engines.pymunk.joints.drive import find_cranks
 from engines.pymunk.reading import read as read_pymunk
 from engines.pymunk.written_script import script
+from engines.reading import Reading
 from reference import trajectory as outlines
 from reference.checks import InvalidMechanism
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
@@ -73,10 +74,14 @@ def assert_equal(mechanism: Mechanism, other: Mechanism, driven: tuple[str, ...]
 
 
 def from_mjcf(text: str) -> Mechanism:
+    return reading_of_mjcf(text).mechanism
+
+
+def reading_of_mjcf(text: str) -> Reading:
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    return read_mujoco(model, data).mechanism
+    return read_mujoco(model, data)
 
 
 def from_script(text: str, folder) -> Mechanism:
@@ -106,7 +111,9 @@ def test_a_scene_is_read_back_from_mjcf_and_a_script_or_refused(scene, tmp_path)
 
 def test_only_the_armature_of_an_exported_drive_is_read_as_a_drive():
     mechanism = scene("driven_four_bar").mechanism()
-    again = from_mjcf(DEFAULT.text(mechanism, 1e-3))
+    reading = reading_of_mjcf(DEFAULT.text(mechanism, 1e-3))
+    assert any("taken as driven at 10 rad/s" in note.reason for note in reading.notes)
+    again = reading.mechanism
     drives, again_drives = (
         [(joint.first, joint.second, joint.turning_rate) for joint in side.joints if isinstance(joint, Drive)]
         for side in (mechanism, again)

@@ -60,6 +60,12 @@ def test_points_and_angles_of_closed_curves_are_continuous_over_many_turns(case)
     np.testing.assert_allclose(turned, math.copysign(2 * np.pi, steepest * curve.curvature_range[0]), atol=1e-13)
 
 
+def test_a_placed_curve_is_rotated_and_shifted_rigidly():
+    placed, arc = CASES["placed"], np.linspace(-5, 5, 50)
+    moved = np.array([1.0, 2.0]) + rotated(0.7, Ellipse(0.5, 0.3).point(arc))
+    np.testing.assert_allclose(placed.point(arc), moved, atol=1e-15)
+
+
 def test_a_curve_traced_through_points_of_an_ellipse_agrees_with_the_ellipse():
     u = np.linspace(0, 2, 200)
     traced, exact = Traced(u, np.stack([0.5 * np.cos(u), 0.3 * np.sin(u)], axis=-1)), Ellipse(0.5, 0.3)

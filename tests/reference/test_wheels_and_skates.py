@@ -160,6 +160,14 @@ def test_a_caster_on_a_circling_cart_is_a_tow(turning_rate):
         assert np.abs(tow.relative_angle(speed * t) + angle - tow.angle - swung[:, index]).max() < 1e-11
 
 
+def test_casters_turn_by_pi_when_the_cart_reverses():
+    casters = Casters(((1.0, 0.3), (1.0, -0.3)), 0.1)
+    # beta is a right angle when tan(beta/2) = 1, at s = c log(1/tan(0.0005)).
+    way = -0.1 * math.log(math.tan(0.0005))
+    swung, _ = casters.swing((1e-3, -1e-3), -0.5, 0.0, [0.0, way / 0.5, 20.0])
+    assert np.abs(swung[1:] - np.array([[0.5, -0.5], [1, -1]]) * math.pi).max() < 1e-8
+
+
 def test_the_wheels_and_kingpins_of_a_cart_are_at_hand_computed_points():
     """The points [m] from each centre of mass are computed by hand, without `Casters`."""
     cart = Cart(centre=0.3, front=0.8, width=0.5, trail=0.12, caster_centre=0.04, redundant=True).mechanism()

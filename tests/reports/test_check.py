@@ -155,7 +155,6 @@ def test_the_damping_of_a_soft_drive_is_relative_to_its_prescribed_rate():
         assert result[0] == pytest.approx([0.0, 0.0, 10.0 * (3.0 - rate)], abs=1e-12)
 
 
-# the equation is x'' = -d/2 x' - 100 x
 def test_a_motion_that_is_cubic_in_time_is_resampled_exactly():
     """The obstacles of a model are looked for between the samples of the ideal motion, also after the last sample but
     one."""
@@ -174,6 +173,7 @@ def test_a_motion_that_is_cubic_in_time_is_resampled_exactly():
     assert twist == pytest.approx(rate(finer), abs=1e-13)
 
 
+# the equation is x'' = -d/2 x' - 100 x
 @pytest.mark.parametrize(("damping", "rate"), [(0.0, 10.0), (80.0, 20.0 + 300.0**0.5)])
 def test_the_stiffest_mode_is_that_of_a_spring_and_a_damper(damping, rate):
     text = (

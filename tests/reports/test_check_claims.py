@@ -20,6 +20,7 @@ from engines.reading import Reading, ReadingTerms
 from reference.joints import Drive, Pin
 from reference.mechanism import Body, Mechanism
 from reference.scenes.four_bar.scenes import DrivenFourBar, FreeFourBar
+from reference.scenes.n_four_bar import NFourBar
 from reference.trajectory import Trajectory
 from reports.check.checked import CheckResult, SweepPlan, check, read_user_model, split_error
 from reports.check.document import check_data
@@ -166,6 +167,16 @@ def test_dead_centres_are_where_crank_and_coupler_are_in_line(drive):
     assert [t for t, _ in result] == pytest.approx(sorted(t for t in wanted if t <= 3.0), abs=1e-3)
     assert len(result) >= 1
     assert facts.singular == ()
+
+
+def test_singular_positions_of_a_motion_are_reported_with_their_times():
+    scene = NFourBar(loops=1)
+    passed = scene.singular_times(1.5)
+    facts = compute_facts(scene.mechanism(), scene.motion(np.union1d(np.linspace(0.0, 1.5, 151), passed)))
+    assert facts.freedoms == (1, 1)
+    assert [t for t, _ in facts.singular] == pytest.approx(passed, abs=1e-9)
+    assert len(passed) >= 1
+    assert max(ratio for _, ratio in facts.singular) < 1e-9
 
 
 @pytest.mark.parametrize("rate", [1e-3, 1e3])

@@ -33,6 +33,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material, Page, no_context
 from reports.model.quantities import QUANTITIES
 from reports.model.tasks import Answer, Motion, Task
+from reports.pages.common import _written_deviations, scene_page
 from reports.pages.engines.examples import ELEMENT_EXAMPLES
 from reports.pages.errata import page as referees
 from reports.pages.faults.page import Offsets
@@ -306,6 +307,11 @@ def test_links_of_a_page_have_targets_and_its_programs_run_as_printed(page, undr
 def called(name: str) -> Disc:
     """A disc in a scene of this name."""
     return type("Named", (Disc,), {"name": name})()
+
+
+def test_known_deviations_belong_to_pages_and_a_page_without_an_entry_has_none():
+    assert scene_page("a third party's", title="X", lesson="One.", scenes=(Disc(),)).known == {}
+    assert {page.name for page in PAGES if page.known} == {*_written_deviations()}
 
 
 def test_no_two_pages_have_the_same_file_name_and_none_has_that_of_the_index():

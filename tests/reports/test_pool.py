@@ -185,32 +185,51 @@ def test_with_killed_workers_every_row_is_returned_once_and_correct(monkeypatch)
 
 ORPHANS = """
 import sys
+from pathlib import Path
 from reports.model.cells import Cell
-from reports.run.running import run_cells
+from reports.run.running import run_into
+from reports.run.store import Store
 from tests.reports.rough_toys import RoughToy
-from tests.toys import Disc
+from tests.toys import Disc, Toy
 
 if __name__ == "__main__":
-    cells = [Cell(Disc(), RoughToy(kind, folder=sys.argv[1]), 1) for kind in ("held sleep", "held native spin")]
-    list(run_cells(cells, limit=60.0, wall=1000.0, workers=2))
+    folder = Path(sys.argv[1])
+    cells = [Cell(Disc(), Toy(), every) for every in (1, 2)]
+    cells += [Cell(Disc(), RoughToy(kind, folder=sys.argv[1]), 1) for kind in ("held sleep", "held native spin")]
+    with Store(folder / "cells.sqlite") as store:
+        run_into(store, cells, done=lambda row: (folder / f"{row.every} is there").touch(), workers=2)
 """
 
 
-def test_workers_end_when_their_parent_is_gone(tmp_path):
-    """One worker sleeps, and native code of the other worker holds the interpreter lock."""
-    script = tmp_path / "script.py"
+@pytest.fixture(scope="module")
+def folder_of_killed_run(tmp_path_factory):
+    """The folder of a run that was killed after it had stored two rows. At that time one worker slept, and native code
+    of the other worker held the interpreter lock."""
+    folder = tmp_path_factory.mktemp("killed")
+    script = folder / "script.py"
     script.write_text(ORPHANS, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen([sys.executable, script, tmp_path], env=environment, stderr=subprocess.DEVNULL)
-    kinds = ("sleep", "native spin")
+    process = subprocess.Popen([sys.executable, script, folder], env=environment, stderr=subprocess.DEVNULL)
     try:
-        wait_until(lambda: all((tmp_path / f"{kind} is there").exists() for kind in kinds))
+        marks = [folder / f"{name} is there" for name in (1, 2, "sleep", "native spin")]
+        wait_until(lambda: all(mark.exists() for mark in marks))
     finally:
         process.kill()
         process.wait()
-    for kind in kinds:
-        with (tmp_path / kind).open("w", encoding="utf-8") as file:
+    return folder
+
+
+def test_workers_end_when_their_parent_is_gone(folder_of_killed_run):
+    for kind in ("sleep", "native spin"):
+        with (folder_of_killed_run / kind).open("w", encoding="utf-8") as file:
             wait_until(lambda file=file: is_free(file))
+
+
+def test_rows_survive_a_kill_and_the_next_run_computes_only_the_missing_ones(folder_of_killed_run):
+    cells = [Cell(Disc(), Toy(), every) for every in (1, 2, 3)]
+    with Store(folder_of_killed_run / "cells.sqlite") as store:
+        assert missing(cells, store) == (cells[2],)
+        assert run_into(store, cells, supervised=in_process) == 1
 
 
 def test_only_missing_cells_are_run_and_timed_out_ones_only_with_a_larger_limit(tmp_path):

@@ -110,6 +110,12 @@ def test_renumber_changes_all_numbers_except_gear_ratios_and_zeros():
     assert len({case_to_json(case) for case in (shape, *others)}) == 6
 
 
+def test_a_recipe_is_read_back_from_its_json():
+    for number in CASES:
+        drawing = recipe(7, number, decades=1)
+        assert case_from_json(case_to_json(drawing), Recipe) == drawing
+
+
 @pytest.mark.parametrize(
     ("invalid", "why"),
     [
