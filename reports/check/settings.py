@@ -1,4 +1,4 @@
-"""The sweep over documented settings within a CPU time limit, and the choice of the cheapest sufficient setting."""
+"""The sweep over documented settings within a CPU time limit, and the choice of the advised setting."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from engines.reading import Change, Reading
 from reference.trajectory import Trajectory
 from reports.check.judging import Errors, measure_errors
+from reports.model.spending import EQUAL_COST_FACTOR
 
 MAX_RUN_TIME = 1.0  # Longest CPU time of one run [s]. Steps that need more time are left out.
 HELPFUL_RATIO = 0.75  # A smaller step is helpful if it reduces the error below this share of the previous error.
@@ -93,7 +94,8 @@ def run_settings_sweep(
         if time.process_time() - begin + cost > plan.patience:
             continue
         for_parts = plan.goal is None and same_options[:1] == settings[:1] and len(same_options) <= SMALLER_STEPS
-        dear = plan.goal is None and (tenth := a_tenth(settings, tolerance)) is not None and cost > tenth.cost
+        tenth = a_tenth(settings, tolerance) if plan.goal is None else None
+        dear = tenth is not None and cost > EQUAL_COST_FACTOR * tenth.cost
         dominated = plan.goal is None and _is_dominated(settings, same_options, change.dt, cost, tolerance)
         if (dear or dominated or _has_plateaued(same_options)) and not (all_wanted or for_parts):
             continue
@@ -142,10 +144,15 @@ def _has_plateaued(table: list[SettingRun]) -> bool:
 
 
 def cheapest(table: list[SettingRun], tolerance: float) -> SettingRun | None:
-    """The cheapest setting whose error is within the tolerance, or None if there is none."""
-    return min(
-        (setting for setting in table if setting.error <= tolerance), key=lambda setting: setting.cost, default=None
-    )
+    """The cheapest setting whose error is within the tolerance, or None if there is none.
+
+    Of settings with equal costs, within `EQUAL_COST_FACTOR`, this is the most accurate one. Otherwise the noise of the
+    CPU times would choose, and the next check of the same model could advise another setting.
+    """
+    sufficient = [setting for setting in table if setting.error <= tolerance]
+    least = min((setting.cost for setting in sufficient), default=0.0)
+    equal = [setting for setting in sufficient if setting.cost <= EQUAL_COST_FACTOR * least]
+    return min(equal, key=lambda setting: setting.error, default=None)
 
 
 def a_tenth(settings: list[SettingRun], tolerance: float) -> SettingRun | None:

@@ -10,6 +10,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
+# CPU times within this factor count as equal, since timings of short runs scatter by about a fifth.
+EQUAL_COST_FACTOR = 1.25
+
 _spent: defaultdict[str, float] = defaultdict(float)
 _inside: list[float] = []  # For each open part: CPU time [s] of the parts inside it.
 

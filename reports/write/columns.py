@@ -25,7 +25,8 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.page import Page
 from reports.model.quantities import quantity
-from reports.write.page_tables import EQUAL_COST_FACTOR, TARGETS, reliable
+from reports.model.spending import EQUAL_COST_FACTOR
+from reports.write.page_tables import TARGETS, reliable
 from reports.write.row_tables import error_words
 from reports.write.tables import DASH, markdown, milliseconds, number, step_words
 

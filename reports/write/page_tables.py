@@ -14,6 +14,7 @@ from reports.model.convergence import ROOM_SOFT, Sweep, by_method, groups, sweep
 from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import QUANTITIES, quantity
+from reports.model.spending import EQUAL_COST_FACTOR
 from reports.write.row_tables import sweep_words
 from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, number, step_words
 
@@ -21,9 +22,6 @@ from reports.write.tables import DASH, ENFORCED_BY, markdown, milliseconds, numb
 COMPARED_STEP = 1e-3
 # Error bounds in the unit of the page's quantity. A setting is recommended for each bound.
 TARGETS = (1e-2, 1e-4, 1e-6, 1e-9)
-# Costs within this factor count as equal, since timings of short runs scatter by about a fifth. Among methods of equal
-# cost, the first method of the page is recommended. A page lists methods with our code last.
-EQUAL_COST_FACTOR = 1.25
 
 # Function of (method, step [s]) that returns the error by the declared regularisation, or NaN if it is unknown.
 DeclaredError = Callable[[str, float], float]
@@ -114,6 +112,7 @@ def advice(rows: Sequence[Measurement], name: str, order: Sequence[str] = ()) ->
 def _cheapest(
     methods: Iterable[Sequence[Measurement]], name: str, target: float, rank: Mapping[str, int]
 ) -> Measurement | None:
+    # Of methods of equal cost, the first one of the page is recommended. A page lists methods with our code last.
     cheapest = [min(rows, key=lambda row: row.cpu) for members in methods if (rows := reliable(members, name, target))]
     least = min((row.cpu for row in cheapest), default=math.nan)
     equal = [row for row in cheapest if row.cpu <= EQUAL_COST_FACTOR * least]

@@ -77,6 +77,7 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
         ([(1e-3, 1.0), (2e-5, 4.0)], 1, None),
         ([(1e-3, 1.0), (2e-3, 0.5)], None, None),
         ([(1e-3, 1.0), (3e-5, 2.0), (9e-6, 4.0), (3e-6, 6.0)], 1, 3),
+        ([(1e-3, 1.0), (3e-5, 2.0), (2e-5, 2.4), (1e-5, 2.6), (1e-6, 4.0)], 2, 4),  # 2.0 and 2.4 are equal costs
     ],
 )
 def test_the_advice_is_the_cheapest_setting_within_the_tolerance(soft, rows, advised, tenth):
