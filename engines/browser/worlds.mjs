@@ -260,38 +260,46 @@ const WARM_RUNS = [1000, 10, 1000], WARM_STEPS = 3000;
 const ENGINES = { planck: Planck, p2: P2, rapier: Rapier, jolt: Jolt };
 const World = ENGINES[name], worlds = new Map(), warm = new Set();
 
+// The states at the samples, the twists one step before each sample, and the CPU time [s] of stepping and recording.
+function run(world, dt, samples, every) {
+  const { bodies } = world, poses = [], twists = [], before = [];
+  const record = () => {
+    poses.push(bodies.map((body) => world.pose(body)));
+    twists.push(bodies.map((body) => world.twist(body)));
+  };
+  record();
+  const begin = process.cpuUsage();
+  for (let sample = 0; sample < samples; sample++) {
+    for (let step = 1; step < every; step++) world.step(dt);
+    before.push(bodies.map((body) => world.twist(body)));
+    world.step(dt);
+    record();
+  }
+  const { user, system } = process.cpuUsage(begin);
+  return { poses, twists, before, seconds: (user + system) / 1e6 };
+}
+
+function warmUp(engine, mechanism) {
+  const kinds = mechanism.joints.map((joint) => joint.kind).sort().join();
+  if (warm.has(kinds)) return;
+  warm.add(kinds);
+  for (const samples of WARM_RUNS) {
+    const trial = new World(engine, mechanism);
+    run(trial, mechanism.dt, samples, WARM_STEPS / samples);
+    trial.close?.();
+  }
+}
+
 const handle = {
   build({ id, ...mechanism }, engine) {
-    const kinds = mechanism.joints.map((joint) => joint.kind).sort().join();
-    if (!warm.has(kinds)) {
-      warm.add(kinds);
-      for (const samples of WARM_RUNS) {
-        handle.build({ id: "trial", ...mechanism }, engine);
-        handle.run({ id: "trial", samples, every: WARM_STEPS / samples });
-        drop("trial");
-      }
-    }
     const world = new World(engine, mechanism);
-    worlds.set(id, [world, mechanism.dt]);
+    worlds.set(id, [world, mechanism]);
     return { inertias: world.bodies.map((body) => world.inertia(body)) };
   },
-  // The states at the samples, the twists one step before each sample, and the CPU time [s] of stepping and recording.
-  run({ id, samples, every }) {
-    const [world, dt] = worlds.get(id), { bodies } = world, poses = [], twists = [], before = [];
-    const record = () => {
-      poses.push(bodies.map((body) => world.pose(body)));
-      twists.push(bodies.map((body) => world.twist(body)));
-    };
-    record();
-    const begin = process.cpuUsage();
-    for (let sample = 0; sample < samples; sample++) {
-      for (let step = 1; step < every; step++) world.step(dt);
-      before.push(bodies.map((body) => world.twist(body)));
-      world.step(dt);
-      record();
-    }
-    const { user, system } = process.cpuUsage(begin);
-    return { poses, twists, before, seconds: (user + system) / 1e6 };
+  run({ id, samples, every }, engine) {
+    const [world, mechanism] = worlds.get(id);
+    warmUp(engine, mechanism);
+    return run(world, mechanism.dt, samples, every);
   },
 };
 

@@ -105,3 +105,19 @@ def test_without_npm_the_installation_ends_with_one_line(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", "")
     with pytest.raises(SystemExit, match="npm"):
         install()
+
+
+@pytest.mark.parametrize("name", [engine.name for engine in DEFAULTS])
+def test_a_build_makes_no_steps(name, monkeypatch, tmp_path):
+    """`crosscheck list` builds all scenes, so the trial runs belong to the first run, which reads the CPU time."""
+    file = tmp_path / "refuse.cjs"
+    file.write_text('process.cpuUsage = () => { throw new Error("a run begins"); };', encoding="utf-8")
+    engine = engine_named(name)
+    monkeypatch.setattr("engines.browser.engine._children", {})
+    monkeypatch.setenv("NODE_OPTIONS", f"--require {file}")
+    run = engine.build(scene("pendulum_1").mechanism(), 1e-3)
+    with pytest.raises(Unsupported, match="a run begins"):
+        run(3, 5)
+    child = child_of(engine.name, engine.settings)
+    child.close()
+    child.process.wait()
