@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,6 +136,10 @@ class CompiledModel:
     def __post_init__(self) -> None:
         self._storage_block, self._tableau, self._tableau_block = block_of(self.storage), NO_STAGES, block_of(NO_STAGES)
         self._set_cells()
+
+    def __reduce__(self) -> tuple[type[CompiledModel], tuple[Any, ...]]:
+        """A copy builds its own blocks, since these contain addresses of its arrays."""
+        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
 
     def _set_cells(self) -> None:
         self.system = self.system._replace(cells=self.windows.cells)

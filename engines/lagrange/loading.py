@@ -14,6 +14,7 @@ import ctypes
 import gc
 import hashlib
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -130,8 +131,10 @@ def _load(machine_code: MachineCode) -> Any:
     llvm.initialize_native_asmprinter()
     machine = llvm.Target.from_default_triple().create_target_machine(jit=True)
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
-    if not all(map(llvm.address_of_symbol, machine_code.calls)):
-        _ = import_module("numba.core.registry").cpu_target.target_context  # adds the missing functions
+    # LLVM itself adds calls, such as memset and sincos, which are not in `calls`. Linux has all of them, and elsewhere
+    # numba adds the missing functions. A missing function would end the process.
+    if sys.platform != "linux" or not all(map(llvm.address_of_symbol, machine_code.calls)):
+        _ = import_module("numba.core.registry").cpu_target.target_context
     engine.add_object_file(llvm.ObjectFileRef.from_data(machine_code.code))
     engine.finalize_object()
     return engine
@@ -184,7 +187,7 @@ def cache_key() -> str:
     digest = hashlib.sha256(
         " ".join((compiler, llvm.get_process_triple(), llvm.get_host_cpu_name(), features)).encode()
     )
-    names = ("records.py", "system.py", "loading.py")
+    names = ("records.py", "system.py", "methods.py", "loading.py")
     for source in (*(SOURCE_FOLDER / name for name in names), *sorted((SOURCE_FOLDER / "compiled").glob("*.py"))):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
     return digest.hexdigest()

@@ -152,12 +152,19 @@ class Samples(NamedTuple):
 
 
 NO_RESULTS: Reals = np.zeros((0, 0))
+# Types of numbers in arrays for compiled functions, which read the memory of another type as wrong numbers.
+NUMBER_TYPES = {np.dtype(kind) for kind in (np.float64, np.complex128, np.uintp)}
 
 
 def block_of(arrays: Iterable[Any]) -> ctypes.Array[ctypes.c_int64]:
-    """The addresses and shapes of contiguous arrays, for compiled functions. The caller must keep the arrays."""
+    """The addresses and shapes of contiguous arrays, for compiled functions. The caller must keep the arrays.
+
+    Raises TypeError for numbers of another type, for example of single precision.
+    """
     words = list[int]()
     for array in arrays:
+        if array.dtype.names is None and array.dtype not in NUMBER_TYPES:
+            raise TypeError(f"an array for compiled code has the type {array.dtype}; convert its numbers to float64")
         if array.ndim == 0:  # a record
             address = array.__array_interface__["data"][0]
         else:  # ValueError if the array is not contiguous

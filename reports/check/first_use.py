@@ -20,7 +20,8 @@ from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reports.check.judging import LOOSER_JUDGE, IdealMotion, reference_motion
 
-COMPILE_SECONDS = 12.0  # CPU time of compilation, measured on one processor [s].
+# CPU time [s] of compilation, measured twice with numba 0.62 and 0.68 on two shared processors: 29.3 and 29.8.
+COMPILE_SECONDS = 30.0
 PROBE_SHARE = 0.1  # The time in numpy is measured for this share of the motion.
 # CPU time of the reference motion divided by the time of a run with the looser tolerance. The reference motion consists
 # of five runs. Measured ratios are 5 to 8.

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import shutil
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from engines.lagrange import TRUTH, Lagrange, loading
+from engines.lagrange.compiled_model import CompiledModel
+from engines.lagrange.methods import RK4
+from engines.lagrange.records import block_of
 from tests.mechanisms import four_bar
 
 pytestmark = pytest.mark.skipif(not loading.installed(), reason="numba, the extra 'fast', is not installed")
@@ -138,3 +145,46 @@ def test_building_a_run_compiles_nothing(monkeypatch):
     monkeypatch.setattr("engines.lagrange.compiled_model.compiled", lambda: pytest.fail("a build compiles"))
     monkeypatch.setattr("engines.lagrange.engine.compiled", lambda: pytest.fail("a build compiles"))
     TRUTH.build(four_bar(), 0.01)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.int64, ">f8"])
+def test_numbers_of_another_type_do_not_reach_machine_code(kind):
+    tableau = RK4._replace(weights=RK4.weights.astype(kind))
+    with pytest.raises(TypeError, match=f"has the type {np.dtype(kind)}; convert its numbers to float64"):
+        block_of(tableau)
+
+
+@pytest.mark.parametrize("make_copy", [copy.copy, copy.deepcopy, lambda model: pickle.loads(pickle.dumps(model))])
+def test_a_copy_of_a_model_uses_its_own_arrays(make_copy):
+    model = CompiledModel.of(four_bar())
+    assert model is not None
+    duplicate = make_copy(model)
+    assert list(duplicate._system_block) == list(block_of(duplicate.system))
+    assert list(duplicate._storage_block) == list(block_of(duplicate.storage))
+    for each in (model, duplicate):
+        poses, twists = each.empty_samples(3)
+        assert each.fixed_steps(RK4, 1, 1e-3, 1, 0, poses, twists) == 3
+        np.testing.assert_array_equal(poses, Lagrange("rk4").build(four_bar(), 1e-3)(3, 1).pose)
+
+
+def test_outside_linux_numba_adds_the_functions_that_llvm_calls(monkeypatch):
+    stored, imported = loading.MachineCode(*loading.read_code() or loading._compile()), []
+
+    def import_it(name):
+        imported.append(name)
+        return SimpleNamespace(cpu_target=SimpleNamespace(target_context=None))
+
+    monkeypatch.setattr(loading, "import_module", import_it)
+    for platform, names in (("linux", []), ("win32", ["numba.core.registry"]), ("darwin", ["numba.core.registry"])):
+        imported.clear()
+        monkeypatch.setattr(loading.sys, "platform", platform)
+        loading._load.__wrapped__(stored)
+        assert imported == names
+
+
+def test_the_key_of_machine_code_depends_on_every_layout_of_a_block(monkeypatch):
+    """Otherwise a new member of a block would be read by old code."""
+    read, names = Path.read_bytes, set()
+    monkeypatch.setattr(Path, "read_bytes", lambda path: names.add(path.name) or read(path))
+    loading.cache_key.__wrapped__()
+    assert {"records.py", "methods.py", "system.py", "run.py", "blocks.py"} <= names
