@@ -144,6 +144,15 @@ def test_a_live_scene_has_the_exact_motion_at_every_position_of_its_sliders():
     assert loaded["measure"] == "position"
 
 
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("rolling: a cam", "our adapter builds no cam"), ("skate: the sleigh", "our code for it runs in Python only")],
+)
+def test_a_reason_in_the_legend_is_a_short_sentence(name, reason):
+    loaded = live_data(replace(LIVE[name], sliders=()), {})
+    assert reason in [method.get("why") for method in loaded["mujoco"]]
+
+
 def test_forces_and_friction_are_returned_only_where_the_motion_determines_them():
     gears = EllipticGears()
     truth = gears.motion(np.linspace(0, 1, 5))

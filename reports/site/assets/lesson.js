@@ -131,7 +131,7 @@ async function show(answer, play, ways) {
   for (const name in NAMES) {
     const entry = find(`.legend .method-${MARKS[name]}`);
     const stored = motions.find((/** @type {any} */ one) => one.name === name)?.why;
-    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}${stored ? " (stored: run in Python)" : ""}`;
+    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}${stored ? " (stored)" : ""}`;
     entry.classList.toggle("lost", name in lost);
     if (name in lost) find(`.legend .method-${MARKS[name]} .figure`).textContent = lost[name];
   }

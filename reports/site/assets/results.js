@@ -41,7 +41,7 @@ function draw(rows) {
   chart.replaceChildren(
     points.length
       ? Plot.plot({
-          width: Math.min(960, chart.clientWidth), height: 460, marginTop: 36, marginLeft: 60, grid: true,
+          width: Math.min(960, chart.clientWidth), height: 460, marginTop: 36, marginLeft: 60, marginBottom: 44, grid: true,
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
           x: { type: "log", label: across, tickFormat: ".0e", ticks: 5 },
           y: { type: "log", label: `error: ${error}`, tickFormat: ".0e", ticks: 5 },
@@ -69,7 +69,7 @@ function draw(rows) {
       const line = document.createElement("tr");
       for (const name of ["engine", "variant", "step", "outcome", "position", "angle", "velocity", "gap", "energy", "reaction", "cpu"]) {
         const value = row[name];
-        line.insertCell().textContent = name === "variant" ? (headings[String(value)] ?? String(value)) : value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(3))) : value;
+        line.insertCell().textContent = name === "variant" ? (headings[String(value)] ?? String(value)) : value === null ? "–" : typeof value === "number" ? rounded(value) : value;
       }
       return line;
     }),
@@ -96,6 +96,9 @@ function separate(labels) {
 
 /** Return whether a row is of one of the three variants of an engine. @param {Row} row */
 const usual = ({ engine, variant }) => String(variant) in headings && !looks[String(engine)].exact;
+
+/** Return a number with three digits; a small number is written with an exponent. @param {number} value */
+const rounded = (value) => (value && Math.abs(value) < 1e-3 ? value.toExponential(2) : String(Number(value.toPrecision(3))));
 
 /** Return the name of a method. @param {Row} row */
 const nameOf = ({ engine, variant }) => `${engine} ${headings[String(variant)] ?? variant}`;
