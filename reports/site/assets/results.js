@@ -41,7 +41,7 @@ function draw(rows) {
   chart.replaceChildren(
     points.length
       ? Plot.plot({
-          width: Math.min(960, chart.clientWidth), height: 460, marginTop: 36, marginLeft: 60, marginBottom: 44, grid: true,
+          width: Math.min(960, chart.clientWidth), height: 474, marginTop: 36, marginLeft: 60, marginBottom: 44, grid: true,
           style: { background: "transparent", color: "var(--ink)", fontSize: "12px" },
           x: { type: "log", label: across, tickFormat: ".0e", ticks: 5 },
           y: { type: "log", label: `error: ${error}`, tickFormat: ".0e", ticks: 5 },
