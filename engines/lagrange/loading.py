@@ -40,7 +40,8 @@ class MachineCode(NamedTuple):
 
 @cache
 def installed() -> bool:
-    return find_spec("numba") is not None
+    """Whether numba is there and may compile."""
+    return find_spec("numba") is not None and os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 
 
 def is_cold() -> bool:

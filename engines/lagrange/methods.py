@@ -31,12 +31,14 @@ def _dop853() -> Tableau:
     """The method for adaptive steps, from scipy's file of numbers, since the import of `scipy.integrate` is slow."""
     found = find_spec("scipy")
     file = Path(found.origin if found and found.origin else "").parent / "integrate/_ivp/dop853_coefficients.py"
-    spec = spec_from_file_location("dop853_coefficients", file) if file.is_file() else None
-    if spec is None or spec.loader is None:
-        from scipy.integrate._ivp import dop853_coefficients as numbers
-    else:
+    spec = spec_from_file_location("dop853_coefficients", file)
+    try:
+        if spec is None or spec.loader is None:
+            raise ImportError(str(file))
         numbers: Any = module_from_spec(spec)
         spec.loader.exec_module(numbers)
+    except (ImportError, OSError):  # a release of scipy with other files
+        from scipy.integrate._ivp import dop853_coefficients as numbers
     return Tableau(numbers.A, numbers.B, numbers.C, numbers.E3, numbers.E5, numbers.D)
 
 

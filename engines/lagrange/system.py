@@ -184,7 +184,7 @@ def _first_rows(joints: Sequence[Joint], numbers: Numbers) -> Integers:
 def _cuthill_mckee(ends: Sequence[tuple[int, int]], ground: int) -> list[int]:
     """The joints in the order of Cuthill and McKee (1969), by the joints on their moving bodies.
 
-    scipy's function gives the same order, but its import is slow.
+    scipy's function gives the same order but for joints with equal degrees, and its import is slow.
     """
     on_body: dict[int, list[int]] = {}
     for joint, bodies in enumerate(ends):
@@ -197,7 +197,8 @@ def _cuthill_mckee(ends: Sequence[tuple[int, int]], ground: int) -> list[int]:
     ]
     degrees = [len(own) + (joint in own) for joint, own in enumerate(neighbours)]
     order, is_placed = list[int](), [False] * len(ends)
-    for seed in np.argsort(degrees).tolist():
+    # numpy's default sort is not stable with AVX-512, so the order of equal degrees would depend on the processor.
+    for seed in sorted(range(len(degrees)), key=degrees.__getitem__):
         if is_placed[seed]:
             continue
         is_placed[seed], position = True, len(order)
