@@ -145,6 +145,10 @@ class CheckResult:
         return self.table[0].errors
 
     @property
+    def own_cost(self) -> float:
+        return self.table[0].cost
+
+    @property
     def met(self) -> bool:
         return self.own_errors.largest <= self.tolerance
 

@@ -40,16 +40,12 @@ class SettingRun:
     change: Change
     errors: Errors
     run: Trajectory
+    cost: float = np.nan  # CPU time of stepping [s], by `with_costs`.
     front: bool = False  # Whether no other setting in the table is both cheaper and more accurate.
 
     @property
     def error(self) -> float:
         return self.errors.largest
-
-    @property
-    def cost(self) -> float:
-        """CPU time of stepping [s]."""
-        return self.run.stepping
 
     @property
     def reaction(self) -> float:
@@ -66,9 +62,9 @@ def run_settings_sweep(
     plan: SweepPlan,
     tolerance: float,
 ) -> list[SettingRun]:
-    """Run the documented settings, beginning with large steps. In the result the user's settings come first. The
-    estimated CPU time of a setting is the number of steps times the measured time of a step. A setting is left out if
-    this time is too long."""
+    """Run the documented settings, beginning with large steps. In the result the user's settings come first. Before a
+    run its CPU time is estimated as the number of steps times the largest measured time of a step. A setting is left
+    out if this time is too long."""
     model = reading.model
 
     def result(change: Change, run: Trajectory) -> SettingRun:
@@ -84,7 +80,7 @@ def run_settings_sweep(
     begin, rates = time.process_time(), {changes[0].options: max(user_run.stepping, 1e-5) / (samples * every)}
     done = {0: result(changes[0], user_run)}
     for number, index in enumerate(order):
-        change, settings = changes[index], list(done.values())
+        change, settings = changes[index], with_costs(list(done.values()))
         same_options = [setting for setting in settings if setting.change.options == change.options]
         if plan.goal is not None and settings[-1].error <= plan.goal:
             break
@@ -102,9 +98,23 @@ def run_settings_sweep(
         run = model.run(samples, every, change)
         rates[change.options] = max(run.stepping / steps, rates.get(change.options, 0.0))
         done[index] = result(change, run)
-    table = [done[index] for index in sorted(done)]
+    table = with_costs([done[index] for index in sorted(done)])
     front = pareto_front(table)
     return [replace(setting, front=setting in front) for setting in table]
+
+
+def with_costs(table: list[SettingRun]) -> list[SettingRun]:
+    """The settings with their costs. A cost is the number of steps times the least measured time of a step with the
+    same options, since the times of short runs scatter, and recording takes most of the time of a run with few steps.
+    A run that gave up is not timed, unless all runs with these options gave up."""
+    out = []
+    for setting in table:
+        same_options = [other for other in table if other.change.options == setting.change.options]
+        timed = [other for other in same_options if other.errors.finished] or same_options
+        # All runs have the same duration, so the time of a step is proportional to this product.
+        least = min(other.run.stepping * other.change.dt for other in timed)
+        out.append(replace(setting, cost=least / setting.change.dt))
+    return out
 
 
 def _is_dominated(

@@ -27,7 +27,7 @@ number = partial(tables.number, infinite="gave up")
 
 def answer_section(result: CheckResult) -> Section:
     size = f"{result.facts.length:.3g} m, the length of the mechanism"
-    cost = f"{number(1e3 * result.own.stepping)} ms of CPU time for {result.duration:g} s"
+    cost = f"{number(1e3 * result.own_cost)} ms of CPU time for {result.duration:g} s"
     facts = (
         ("measure", f"the largest error of all angles [rad] and all centres of mass [{size}], beside ideal joints"),
         ("why", _why(result)),
@@ -159,7 +159,7 @@ def _advice(result: CheckResult) -> tuple[str, ...]:
     if advised.error > ROUNDING_ERROR and result.decade is not None:
         ratio = number(_cost_ratio(result.decade, advised))
         tenth = (f"A tenth of that error costs {ratio} times as much: {result.decade.change.words}.",)
-    if result.met and advised.cost >= CHEAPER_COST * result.own.stepping:
+    if result.met and advised.cost >= CHEAPER_COST * result.own_cost:
         return (f"no setting that was tried meets it much cheaper{goal}.", *tenth)
     errors = f"the error is {number(advised.error)} instead of {number(result.own_errors.largest)}"
     ratio = number(_cost_ratio(advised, result.table[0]))
@@ -267,8 +267,9 @@ def _table(result: CheckResult) -> Section:
         return _row(result, displayed, "none is both cheaper and better" if displayed.front else "", same)
 
     sentences = (
-        "Your model with other settings that its engine documents; all else is as you have it. CPU time is of stepping "
-        "alone, on this machine. Of settings with the same errors the cheapest is listed, or yours.",
+        "Your model with other settings that its engine documents; all else is as you have it. CPU time is the number "
+        "of steps times the least time of a step with these options, on this machine. Of settings with the same errors "
+        "the cheapest is listed, or yours.",
     )
     return Section(
         "What to change", sentences, header=SETTINGS_HEADER, rows=tuple(row(group) for group in groups.values())

@@ -27,6 +27,7 @@ from reports.check.document import check_data
 from reports.check.facts import compute_facts
 from reports.check.judging import find_opening, measure_errors, reference_motion, refuse_disagreement
 from reports.check.rendering import plain
+from reports.check.settings import with_costs
 from reports.check.telling import answer_section, report_sections
 from tests.reports.test_check import FOUR_BAR, INPUTS, PENDULUM, found_in
 
@@ -55,7 +56,7 @@ def with_settings(found: CheckResult, *rows: tuple[float, float], tolerance: flo
                 of={name: np.full_like(first.errors.t, error) for name in first.errors.of},
                 whole=np.full_like(first.errors.t, error),
             ),
-            run=replace(first.run, stepping=cost),
+            cost=cost,
             front=True,
         )
         for index, (error, cost) in enumerate(rows)
@@ -86,6 +87,26 @@ def test_the_advice_is_the_cheapest_setting_within_the_tolerance(soft, rows, adv
     for setting, index in ((result.advised, advised), (result.decade, tenth)):
         assert (setting is None and index is None) or setting is result.table[index]
     assert bool(answer_section(result).code) == (advised is not None and not result.met)
+
+
+def test_a_cost_is_the_number_of_steps_times_the_least_time_of_a_step_of_a_finished_run_with_the_same_options(soft):
+    first = soft.table[0]
+    runs = [  # options, step [s], measured CPU time [s], whether the run finished, expected cost [s]
+        ("a", 1e-3, 9.0, True, 2.0),
+        ("a", 5e-4, 4.0, True, 4.0),
+        ("a", 2.5e-4, 0.1, False, 8.0),
+        ("b", 1e-3, 3.0, False, 3.0),
+    ]
+    table = [
+        replace(
+            first,
+            change=replace(first.change, options=((name, 1),), dt=dt),
+            errors=replace(first.errors, finished=finished),
+            run=replace(first.run, stepping=seconds),
+        )
+        for name, dt, seconds, finished, _ in runs
+    ]
+    assert [setting.cost for setting in with_costs(table)] == pytest.approx([cost for *_, cost in runs], rel=1e-12)
 
 
 def test_an_error_equal_to_the_tolerance_meets_it_and_a_larger_one_does_not(soft):
