@@ -300,11 +300,12 @@ def apply_advised(result: CheckResult, target: Path) -> Applied:
 
 def resample(motion: Trajectory, parts: int) -> tuple[Array, Array, Array]:
     """Times, poses and twists with `parts` instants per sampling interval, by cubic Hermite interpolation."""
-    t = np.linspace(motion.t[0], motion.t[-1], parts * (len(motion.t) - 1) + 1)
-    index = np.minimum(np.arange(len(t)) // parts, len(motion.t) - 2)
+    instant = np.arange(parts * (len(motion.t) - 1) + 1)
+    index = np.minimum(instant // parts, len(motion.t) - 2)
+    share = (instant / parts - index)[:, None, None]
     span = np.diff(motion.t)[index, None, None]
-    share = (t - motion.t[index])[:, None, None] / span
-    start, mean = motion.twist[index], (np.diff(motion.pose, axis=0)[index]) / span
+    t = motion.t[index] + (span * share)[:, 0, 0]
+    start, mean = motion.twist[index], np.diff(motion.pose, axis=0)[index] / span
     square, cube = 3 * mean - 2 * start - motion.twist[index + 1], start + motion.twist[index + 1] - 2 * mean
     pose = motion.pose[index] + span * share * (start + share * (square + share * cube))
     return t, pose, start + share * (2 * square + 3 * share * cube)
