@@ -16,7 +16,7 @@ from reports.cli import bench as command
 from reports.model.ending import BadInput
 from reports.model.page import Material
 from reports.pages.rendering import render_page
-from reports.pages.speed.page import NO_REASON, PAGE, page_of, reason_of, spread
+from reports.pages.speed.page import NO_REASON, PAGE, REASONS, page_of, reason_of, spread
 from reports.pages.speed.table import (
     ABSENT,
     FILE,
@@ -212,6 +212,20 @@ def test_a_reason_belongs_to_its_engine_scene_and_target():
     ]
     assert texts[3:] == [NO_REASON, NO_REASON]
     assert len({NO_REASON, *texts}) == 4
+
+
+def test_each_reason_belongs_to_a_cell_of_the_published_table_and_names_its_scenes_and_engines():
+    rows = read().rows
+    found = {reason_of(row) for row in rows}
+    for entry in REASONS:
+        assert " ".join(entry["reason"].split()) in found
+        assert set(entry) <= {"engines", "scenes", "targets", "reason"}
+        for key, values in (
+            ("engines", {row.engine for row in rows}),
+            ("scenes", {row.scene for row in rows}),
+            ("targets", {row.target for row in rows}),
+        ):
+            assert set(entry.get(key, ())) <= values
 
 
 def test_new_rows_replace_those_of_their_scene_and_engine_and_rows_of_another_machine_are_not_kept():
