@@ -26,7 +26,6 @@ PLANNED_CASES, ALONE_CASES = 100, 1000  # Number of cases of a seed for an engin
 COMPILED_CASES = 20
 SINGULAR_CASES = 60  # Number of cases with nearly dependent rows, for engines with pins and rods.
 KIND_TRIALS = 60  # Number of mechanisms that are tried for one kind of joint.
-# Pymunk's usual slot, which may be wrong (see `engines.pymunk.joints.slide`).
 
 
 @cache

@@ -14,7 +14,7 @@ from typing import Any
 
 from reports.gate.change import WORSE
 from reports.model.outcomes import Outcome
-from reports.model.quantities import agrees, quantity
+from reports.model.quantities import DIGITS, agrees, quantity
 from reports.model.tasks import Answer
 from reports.run.installed import numbers
 from reports.versions.column import VersionColumn
@@ -176,11 +176,11 @@ def merged(old: ReleaseTable, new: ReleaseTable) -> ReleaseTable:
 
 def as_published(table: ReleaseTable, before: ReleaseTable) -> ReleaseTable:
     """The entries of `table`. A number that differs from `before` only by rounding or noise is taken from `before`."""
-    published = {(*entry.identity, entry.outcome, f"{entry.step:.4g}"): entry for entry in before.entries}
+    published = {(*entry.identity, entry.outcome, f"{entry.step:.{DIGITS}g}"): entry for entry in before.entries}
 
     def kept(now: Entry) -> Entry:
-        earlier = published.get((*now.identity, now.outcome, f"{now.step:.4g}"), now)
-        same = f"{now.error:.4g}" == f"{earlier.error:.4g}"
+        earlier = published.get((*now.identity, now.outcome, f"{now.step:.{DIGITS}g}"), now)
+        same = f"{now.error:.{DIGITS}g}" == f"{earlier.error:.{DIGITS}g}"
         same = same if now.quantity == ACCELERATION else agrees(now.quantity, now.error, earlier.error)
         cpu = earlier.cpu if abs(now.cpu - earlier.cpu) < SAME_COST * earlier.cpu else now.cpu
         return replace(now, error=earlier.error if same else now.error, cpu=cpu)
