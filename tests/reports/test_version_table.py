@@ -18,6 +18,7 @@ from reports.model.outcomes import Outcome
 from reports.model.page import Material
 from reports.model.tasks import Answer
 from reports.pages.versions import page
+from reports.run.installed import numbers
 from reports.versions.builds import Build, BuildComparison
 from reports.versions.column import VersionColumn, with_known_names
 from reports.versions.comparison import compared
@@ -59,6 +60,8 @@ def test_changes_between_versions_are_found_from_the_errors():
     assert changes_between("mujoco", "3.6.0", "4.0.1") == [known[version] for version in ("3.7.0", "4.0.0", "4.0.1")]
     assert changes_between("mujoco", "3.7.0", "3.17.0") == changes_between("pymunk", "3.6.0", "4.0.0") == []
     assert all(change["source"].startswith("https://") for change in changes_between("mujoco", "0", "99"))
+    for versions in RELEASES.values():
+        assert list(versions) == sorted(versions, key=numbers)
 
 
 def test_a_table_is_read_as_it_was_written_and_renewed_by_version(tmp_path):

@@ -173,7 +173,7 @@ PAGE = scene_page(
             observations=refusal,
         ),
         Failure(
-            "Three ways to drive a crank",
+            "Four ways to drive a crank",
             cells=cells(DrivenFourBar(), (mujoco.TUNED, pymunk.TUNED), (1, 10, 100)),
         ),
         Failure(
