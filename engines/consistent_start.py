@@ -20,7 +20,7 @@ from reference.checks import InvalidMechanism
 from reference.forces import ForceElement
 from reference.joints import Body, Joint, Vector
 from reference.mechanism import START_TOLERANCE, Mechanism, open_joint
-from reference.rows import rank
+from reference.reactions import rank
 
 Array = NDArray[np.float64]
 # A message names the rows whose slip exceeds this share of the largest slip. A smaller slip is rounding.

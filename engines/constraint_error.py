@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.mechanism import Mechanism
-from reference.rows import RANK_TOLERANCE
+from reference.reactions import RANK_TOLERANCE
 from reference.trajectory import RunWarning
 
 Array = NDArray[np.float64]

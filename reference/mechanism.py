@@ -27,7 +27,8 @@ from reference.checks import (
 from reference.forces import ForceElement
 from reference.joints import Body, Joint, Vector
 from reference.plane import COMPLEX_STEP
-from reference.rows import MANY_ROWS, AppliedForces, JointRows, banded_reaction, rank, reactions
+from reference.reactions import MANY_ROWS, banded_reaction, rank, reactions
+from reference.rows import AppliedForces, JointRows
 from reference.scales import length_scale, time_scale
 from reference.validators import Array, of_shape
 

@@ -12,7 +12,7 @@ from engines import Regularisation
 from engines.lagrange.methods import Tableau
 from engines.lagrange.records import CLOSED, LEAST_INVERSE_INERTIA
 from reference.mechanism import Mechanism
-from reference.rows import RANK_TOLERANCE, rank, solve_symmetric
+from reference.reactions import RANK_TOLERANCE, rank, solve_symmetric
 
 Array = NDArray[np.float64]
 

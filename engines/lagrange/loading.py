@@ -188,7 +188,7 @@ def cache_key() -> str:
     digest = hashlib.sha256(
         " ".join((compiler, llvm.get_process_triple(), llvm.get_host_cpu_name(), features)).encode()
     )
-    names = ("records.py", "system.py", "methods.py", "loading.py")
+    names = ("records.py", "system.py", "elimination.py", "methods.py", "loading.py")
     for source in (*(SOURCE_FOLDER / name for name in names), *sorted((SOURCE_FOLDER / "compiled").glob("*.py"))):
         digest.update(source.name.encode() + b"\0" + source.read_bytes() + b"\0")
     return digest.hexdigest()

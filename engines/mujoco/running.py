@@ -21,7 +21,7 @@ from engines.mujoco.solver_check import solver_residual
 from engines.mujoco.step_doubling import ORDER, Counts, StepDoubling
 from engines.sampling import sampled
 from reference.checks import Count, validated
-from reference.rows import RANK_TOLERANCE
+from reference.reactions import RANK_TOLERANCE
 from reference.trajectory import RunWarning, Trajectory
 
 Array = NDArray[np.float64]

@@ -34,7 +34,7 @@ from engines.remembered import by_identity
 from reference.checks import Count, Numbers, Positive, validated
 from reference.joints import Drive, Roll, Skate, Weld
 from reference.mechanism import Mechanism
-from reference.rows import RANK_TOLERANCE, ranks
+from reference.reactions import RANK_TOLERANCE, ranks
 from reference.validators import Rule
 
 Array = NDArray[np.float64]

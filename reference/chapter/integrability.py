@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from reference.checks import InvalidMechanism, validated
 from reference.mechanism import Mechanism
 from reference.plane import COMPLEX_STEP
-from reference.rows import RANK_TOLERANCE
+from reference.reactions import RANK_TOLERANCE
 from reference.validators import Array, of_shape
 
 Place = Annotated[Array, of_shape("coordinates")]

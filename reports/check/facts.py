@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from reference.joints import Drive, Pin, Slot, Weld
 from reference.mechanism import Mechanism
-from reference.rows import undetermined
+from reference.reactions import undetermined
 from reference.trajectory import Trajectory
 from reports.check.judging import accelerations
 

@@ -17,7 +17,7 @@ from engines.reading import Reading, RowRegularisation, left_out
 from reference.checks import InvalidMechanism
 from reference.mechanism import Mechanism
 from reference.plane import COMPLEX_STEP
-from reference.rows import undetermined
+from reference.reactions import undetermined
 from reference.trajectory import Trajectory, energy
 from reports.check.one_freedom import has_one_freedom, motion_along_curve
 

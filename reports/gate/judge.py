@@ -28,7 +28,7 @@ from engines.lagrange.loading import installed
 from engines.lagrange.methods import RK4, Tableau
 from reference.checks import freeze
 from reference.mechanism import Mechanism
-from reference.rows import RANK_TOLERANCE
+from reference.reactions import RANK_TOLERANCE
 from reference.scene import Scene
 from reference.trajectory import Trajectory
 from reports.model.errors import constraint_errors, motion_errors

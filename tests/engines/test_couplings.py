@@ -22,7 +22,7 @@ from reference.couplings import Coupling, Term
 from reference.forces import CoupledForce
 from reference.joints import Body, Pin
 from reference.mechanism import Mechanism
-from reference.rows import banded_reaction
+from reference.reactions import banded_reaction
 from reference.trajectory import energy
 from reports.check.judging import refuse_disagreement
 from tests import independent

@@ -18,7 +18,7 @@ from reference.checks import InvalidMechanism, cached_readonly
 from reference.forces import Damper, Force, Spring, Torque, TorsionDamper, TorsionSpring
 from reference.joints import Drive, Pin, Rod, Skate, Slot
 from reference.mechanism import Body, Mechanism
-from reference.rows import banded_reaction, rank, reactions, solve_symmetric, undetermined
+from reference.reactions import banded_reaction, rank, reactions, solve_symmetric, undetermined
 from reference.scales import length_scale, time_scale
 from reference.scenes.catalogue import SCENES
 from reference.scenes.n_four_bar import NFourBar, TenFourBars

@@ -13,11 +13,11 @@ from reference.checks import Positive, validated
 from reference.joints import Drive, Pin, bodies_of
 from reference.mechanism import Mechanism
 from reference.plane import swung
+from reference.reactions import undetermined
 from reference.rolling.closed_curves import Ellipse
 from reference.rolling.curves import Array
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
-from reference.rows import undetermined
 from reference.scene import PlacedScene
 from reference.trajectory import Trajectory
 from reference.validators import from_to
