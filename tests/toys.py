@@ -46,6 +46,10 @@ class Disc(Scene):
         return np.where(pose[..., 0, 2] > 2.0, -1, 1)
 
 
+class OtherDisc(Disc):
+    name: ClassVar[str] = "other_disc"
+
+
 @dataclass(frozen=True)
 class ImpossibleDisc(Disc):
     """A scene with a mechanism and without a reference motion."""

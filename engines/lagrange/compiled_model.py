@@ -17,13 +17,13 @@ from engines.lagrange.methods import ADAPTIVE_DOP853, NO_STAGES, Tableau
 from engines.lagrange.records import (
     CELL_SIZE,
     NO_RESULTS,
+    CompiledTask,
     Records,
     RollingForm,
     RowLaw,
     Samples,
     StepStorage,
     System,
-    Task,
     block_of,
     new_storage,
 )
@@ -216,7 +216,7 @@ class CompiledModel:
         A run stops early if a contact has no cell or if the motion diverges.
         """
         samples = _flat(poses, twists)
-        return self._call(Task.FIXED_STEPS, tableau, samples, begin, iterations, every, dt, 0.0)
+        return self._call(CompiledTask.FIXED_STEPS, tableau, samples, begin, iterations, every, dt, 0.0)
 
     def adaptive_steps(self, tolerance: float, spacing: float, begin: int, poses: Array, twists: Array) -> int:
         """Fill the samples, which are `spacing` [s] apart, by adaptive steps; see `fixed_steps`."""
@@ -224,18 +224,25 @@ class CompiledModel:
         self.system.status["accepted_steps"] = 0
         samples = _flat(poses, twists)
         settings = begin, PROJECTION_ITERATIONS, 1, spacing, step_tolerance
-        return self._call(Task.ADAPTIVE_STEPS, ADAPTIVE_DOP853, samples, *settings)
+        return self._call(CompiledTask.ADAPTIVE_STEPS, ADAPTIVE_DOP853, samples, *settings)
 
     def reactions(self, dt: float, poses: Array, twists: Array) -> tuple[Array, Array]:
         """Reactions (samples, rows) and accelerations (samples, bodies, 3) of states dt [s] apart; NaN if unknown."""
         reactions = np.full((len(poses), len(self.positions)), np.nan)
         accelerations = np.full((len(poses), 3 * len(self.mechanism.bodies)), np.nan)
         samples = _flat(poses, twists, reactions, accelerations)
-        self._call(Task.EVALUATION, ADAPTIVE_DOP853, samples, 0, 0, 1, dt, 0.0)
+        self._call(CompiledTask.EVALUATION, ADAPTIVE_DOP853, samples, 0, 0, 1, dt, 0.0)
         return reactions[:, self.positions], accelerations.reshape(poses.shape)
 
     def _call(
-        self, task: Task, tableau: Tableau, samples: Samples, begin: int, iterations: int, every: int, *reals: float
+        self,
+        task: CompiledTask,
+        tableau: Tableau,
+        samples: Samples,
+        begin: int,
+        iterations: int,
+        every: int,
+        *reals: float,
     ) -> int:
         """Run a task; after each move of a window, run it again from the last completed sample."""
         if tableau is not self._tableau:

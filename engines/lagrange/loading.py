@@ -30,7 +30,7 @@ SOURCE_FOLDER = Path(__file__).parent
 COMPILING_NOTE = "compiling the judge's machine code, once for this installation: up to two minutes"
 
 
-class MachineCode(NamedTuple):
+class ObjectFile(NamedTuple):
     """An object file, the name of its function, and the names of functions of other libraries that it calls."""
 
     function: str
@@ -89,7 +89,7 @@ def compiled() -> Callable[..., int]:
     return call
 
 
-def _compile() -> MachineCode:
+def _compile() -> ObjectFile:
     """Compile the function and store the file, which is complete whenever another process reads it.
 
     Garbage collection is off during the compilation, since it would take a twelfth of the time.
@@ -98,7 +98,7 @@ def _compile() -> MachineCode:
     collects = gc.isenabled()
     gc.disable()
     try:
-        machine_code = MachineCode(*run.compile_run())
+        machine_code = ObjectFile(*run.compile_run())
     finally:
         if collects:
             gc.enable()
@@ -110,7 +110,7 @@ def _compile() -> MachineCode:
     return machine_code
 
 
-def read_code() -> MachineCode | None:
+def read_code() -> ObjectFile | None:
     """The machine code for this processor, or None if there is no file or if the file is damaged."""
     try:
         digest, _, content = code_file().read_bytes().partition(b"\n")
@@ -120,11 +120,11 @@ def read_code() -> MachineCode | None:
         return None
     names, _, code = content.partition(b"\n")
     function, *calls = names.decode().split()
-    return MachineCode(function, tuple(calls), code)
+    return ObjectFile(function, tuple(calls), code)
 
 
 @cache
-def _load(machine_code: MachineCode) -> Any:
+def _load(machine_code: ObjectFile) -> Any:
     """LLVM's engine with the code in memory, which is kept until the process ends."""
     import llvmlite.binding as llvm
 

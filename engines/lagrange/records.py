@@ -32,7 +32,7 @@ class RollingForm(IntEnum):
     ON_LINE, ON_ROUND, TABULATED, NOT_TABULATED = range(4)
 
 
-class Task(IntEnum):
+class CompiledTask(IntEnum):
     FIXED_STEPS, ADAPTIVE_STEPS, EVALUATION = range(3)
 
 

@@ -168,7 +168,7 @@ def test_a_copy_of_a_model_uses_its_own_arrays(make_copy):
 
 
 def test_outside_linux_numba_adds_the_functions_that_llvm_calls(monkeypatch):
-    stored, imported = loading.MachineCode(*loading.read_code() or loading._compile()), []
+    stored, imported = loading.ObjectFile(*loading.read_code() or loading._compile()), []
 
     def import_it(name):
         imported.append(name)

@@ -215,7 +215,7 @@ def test_unknown_names_are_refused_in_one_line(here, words, telling, capfd):
     assert telling in one_line(capfd.readouterr().err)
 
 
-class Registered:
+class ToyEntryPoint:
     """A replacement for an entry point of importlib.metadata."""
 
     def __init__(self, distribution: str, name: str, value: str) -> None:
@@ -240,7 +240,7 @@ def test_an_entry_point_that_can_not_be_used_is_one_line_and_the_others_stay(her
     )
     written(here, "theirs_4.py", FALLING + extra)
     monkeypatch.syspath_prepend(here)
-    points = [Registered("theirs", "good", "theirs_4:ENGINES"), Registered("theirs", "other", value)]
+    points = [ToyEntryPoint("theirs", "good", "theirs_4:ENGINES"), ToyEntryPoint("theirs", "other", value)]
     monkeypatch.setattr(loading.metadata, "entry_points", lambda group: points)
     entries = loading.registered("crosscheck.engines", registry.ENGINE, method_name)
     assert methods(entries.values) == [*methods(registry.VARIANTS), "mine euler projection", "mine rk4 projection"]

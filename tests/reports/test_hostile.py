@@ -173,7 +173,7 @@ def test_a_missing_exact_motion_is_not_counted_as_an_error_of_the_engine(name, n
 
 
 @dataclass(frozen=True)
-class Wrong(Disc):
+class WrongScene(Disc):
     """A user's scene whose exact motion has the defect `how`."""
 
     name: ClassVar[str] = "wrong"
@@ -194,10 +194,10 @@ class Wrong(Disc):
     "how", ["pose=nan", "pose=inf", "twist=nan", "twist=1e200", "reaction=inf", "raise=1/0", "raise=diverged"]
 )
 def test_a_users_truth_that_is_not_finite_is_refused_by_name_and_the_engine_is_not_graded(how):
-    row = measure(Cell(Wrong(how=how), Given(disc()), 1), repeat=False)
+    row = measure(Cell(WrongScene(how=how), Given(disc()), 1), repeat=False)
     assert row.outcome == "refused"
     assert row.sentence.startswith("scene 'wrong': no motion is known up to ")
 
 
 def test_an_unknown_reaction_in_the_exact_motion_is_accepted():
-    assert measure(Cell(Wrong(how="reaction=nan"), Given(disc()), 1), repeat=False).outcome == "finished"
+    assert measure(Cell(WrongScene(how="reaction=nan"), Given(disc()), 1), repeat=False).outcome == "finished"

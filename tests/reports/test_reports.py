@@ -9,7 +9,6 @@ import xml.etree.ElementTree as xml
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -37,7 +36,7 @@ from reports.write.rows import lookups
 from reports.write.templates import environment, marks
 from reports.write.unmeasured import NOT_MEASURED, UNMEASURED, MissingAsNaN, without_marks
 from tests.rows import ROW, falling, row_of
-from tests.toys import FAILURES, Disc, FailingToy, Toy
+from tests.toys import FAILURES, Disc, FailingToy, OtherDisc, Toy
 
 ENGINES = (Toy(), Toy("soft", plateau=1e-3), FailingToy("unsupported"), FailingToy("tear"))
 FAST_FAILURES = tuple(FailingToy(v) for v in FAILURES if v not in ("abort", "exit", "hang", "raise"))
@@ -102,10 +101,6 @@ def test_pictures_are_well_formed_and_every_colour_has_its_dark_counterpart(file
 
 
 README = "\n".join(marks("loop"))
-
-
-class OtherDisc(Disc):
-    name: ClassVar[str] = "other_disc"
 
 
 DISC, OTHER = Disc(), OtherDisc()

@@ -34,7 +34,7 @@ from reports.write.experiments import render_experiment, without_incomparable_er
 from reports.write.page_tables import advice, advice_table, compared_step, reliable, scene_table
 from tests.present import present
 from tests.rows import falling, row, row_of, table
-from tests.toys import Disc, Toy
+from tests.toys import Disc, OtherDisc, Toy
 
 NAN = math.nan
 # Steps of the rows from `falling`, instead of the steps that people use.
@@ -55,10 +55,6 @@ class HeldBy(Toy):
 
 class WithoutPin(Toy):
     capability = Capability("toy", (), lacks={Pin: Lack("toy has no pin", "https://its.documentation")})
-
-
-class OtherDisc(Disc):
-    name = "other_disc"
 
 
 def page_of(*methods: Toy, **changes) -> Page:

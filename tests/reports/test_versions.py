@@ -31,13 +31,13 @@ except ImportError:
     toyengine = None
 
 @dataclass(frozen=True)
-class Mine(Toy):
+class ToyAdapter(Toy):
     name: str = "toyengine"
 
     def build(self, mechanism, dt):
         return Toy(factor=toyengine.error()).build(mechanism, dt)
 
-ENGINE = Mine("default")
+ENGINE = ToyAdapter("default")
 """
 LOUD = "import os\nprint('noise')\nos.write(1, b'noise')\nopen('left.txt', 'w').write('x')\ndef error(): return 50.0\n"
 WITH_ADAPTER = ["--engine", "adapter.py:ENGINE", "--scenes", "scene.py:DISC"]

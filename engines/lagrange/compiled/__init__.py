@@ -1,9 +1,8 @@
 """The equations of motion and the steps as functions that numba compiles. Only `engines.lagrange.loading` calls them.
 
-The functions change the arrays of a `records.System` and a `records.StepStorage`, of which they receive the pointer of
-a `blocks.Block`, and return numbers or booleans. A
-division by zero gives an infinity or NaN, as in numpy. Numba does not reorder sums, so results are equal on all
-processors.
+The functions change the arrays of a `records.System` and a `records.StepStorage`, and return numbers or booleans. They
+receive these arrays as pointers of `blocks.BlockType`. A division by zero gives an infinity or NaN, as in numpy. Numba
+does not reorder sums, so results are equal on all processors.
 
 Reference counting is off (`_nrt`), since it would take longer than the computation; no function creates an array or
 raises an exception. Functions have no wrappers for Python, which would double the compilation time. The decorators

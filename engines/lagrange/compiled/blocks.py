@@ -17,7 +17,7 @@ from numba.np.arrayobj import populate_array
 WORD = ir.IntType(64)
 
 
-class Block(types.Type):
+class BlockType(types.Type):
     """The type of the block of a NamedTuple; `places` are the places of the arrays' addresses in the block."""
 
     def __init__(self, arrays: Any) -> None:
@@ -28,19 +28,19 @@ class Block(types.Type):
         super().__init__(type(arrays).__name__)  # a short name, which is a part of the names of functions
 
 
-register_model(Block)(models.OpaqueModel)
+register_model(BlockType)(models.OpaqueModel)
 
 
 @infer_getattr
 class _BlockMembers(AttributeTemplate):
-    key = Block
+    key = BlockType
 
-    def generic_resolve(self, block: Block, name: str) -> Any:
+    def generic_resolve(self, block: BlockType, name: str) -> Any:
         return block.members.get(name)
 
 
-@lower_getattr_generic(Block)
-def _load_member(context: Any, builder: Any, block: Block, pointer: Any, name: str) -> Any:
+@lower_getattr_generic(BlockType)
+def _load_member(context: Any, builder: Any, block: BlockType, pointer: Any, name: str) -> Any:
     """The array from its address and shape, which no function changes."""
 
     def load(place: int) -> Any:
