@@ -282,12 +282,15 @@ function run(world, dt, samples, every) {
 function warmUp(engine, mechanism) {
   const kinds = mechanism.joints.map((joint) => joint.kind).sort().join();
   if (warm.has(kinds)) return;
-  warm.add(kinds);
   for (const samples of WARM_RUNS) {
     const trial = new World(engine, mechanism);
-    run(trial, mechanism.dt, samples, WARM_STEPS / samples);
-    trial.close?.();
+    try {
+      run(trial, mechanism.dt, samples, WARM_STEPS / samples);
+    } finally {
+      trial.close?.();
+    }
   }
+  warm.add(kinds);
 }
 
 const handle = {

@@ -107,17 +107,28 @@ def test_without_npm_the_installation_ends_with_one_line(monkeypatch, tmp_path):
         install()
 
 
+# The first run of a process fails. Each later call returns its number as the CPU time [s].
+FIRST_RUN_FAILS = """
+let calls = 0;
+process.cpuUsage = () => {
+  if (++calls === 1) throw new Error("a run begins");
+  return { user: 1e6 * calls, system: 0 };
+};
+"""
+
+
 @pytest.mark.parametrize("name", [engine.name for engine in DEFAULTS])
-def test_a_build_makes_no_steps(name, monkeypatch, tmp_path):
-    """`crosscheck list` builds all scenes, so the trial runs belong to the first run, which reads the CPU time."""
-    file = tmp_path / "refuse.cjs"
-    file.write_text('process.cpuUsage = () => { throw new Error("a run begins"); };', encoding="utf-8")
-    engine = engine_named(name)
+def test_the_trial_runs_belong_to_the_first_run_which_is_refused_if_a_trial_fails(name, monkeypatch, tmp_path):
+    """`crosscheck list` builds all scenes, so a build makes no steps."""
+    (tmp_path / "first.cjs").write_text(FIRST_RUN_FAILS, encoding="utf-8")
+    engine, mechanism = engine_named(name), scene("pendulum_1").mechanism()
     monkeypatch.setattr("engines.browser.engine._children", {})
-    monkeypatch.setenv("NODE_OPTIONS", f"--require {file}")
-    run = engine.build(scene("pendulum_1").mechanism(), 1e-3)
-    with pytest.raises(Unsupported, match="a run begins"):
+    monkeypatch.setenv("NODE_OPTIONS", f"--require {tmp_path / 'first.cjs'}")
+    run = engine.build(mechanism, 1e-3)
+    with pytest.raises(Unsupported, match=r"^the engine refuses it: a run begins$"):
         run(3, 5)
+    # The next run makes the trial runs again: calls 2 to 7 are of three trial runs, 8 and 9 of the run itself.
+    assert engine.build(mechanism, 1e-3)(3, 5).stepping == 9
     child = child_of(engine.name, engine.settings)
     child.close()
     child.process.wait()
