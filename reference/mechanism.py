@@ -235,7 +235,8 @@ class Mechanism(Valid):
         """The numbers of configuration and velocity freedoms, from the rank of the rows at a pose or the start.
 
         A skate removes only a freedom of velocity; a drive removes a freedom of velocity and a freedom of configuration
-        (box 18.3). The cost is O(bodies^3). Raises InvalidMechanism if the rows take more than LARGEST_RANK.
+        (box 18.3). The cost is O(bodies^3). Raises InvalidMechanism if the rows take more than LARGEST_RANK, or if a
+        row is not finite, such as the row of a rod whose points coincide.
         """
         return self._freedoms_at_start if pose is None else self._freedoms(pose)
 
@@ -247,6 +248,10 @@ class Mechanism(Valid):
         shape = (self.row_count, 3 * len(self.bodies))
         require_room("mechanism: the rank of rows", shape, largest=LARGEST_RANK)
         rows = self.rows(pose)
+        finite = np.isfinite(rows).all(axis=-1)
+        if not finite.all():
+            name = self.row_names[int(np.argmin(finite))]
+            raise InvalidMechanism(f"mechanism: the row {name!r} is not finite at this pose; give another pose")
         coordinates = rows.shape[-1]
         length = self.length_scale
         return coordinates - rank(rows[self.holonomic], length), coordinates - rank(rows, length)

@@ -30,11 +30,13 @@ def rank(rows: Array, length: float) -> int:
     takes a thirtieth of the time of a singular value decomposition for a long chain.
     """
     scaled = _unitless(rows, length)
-    try:
-        np.linalg.cholesky(scaled @ scaled.T - REGULAR * len(rows) * np.eye(len(rows)))
-    except np.linalg.LinAlgError:
-        return int(ranks(rows, np.asarray(length)))
-    return len(rows)
+    if np.isfinite(scaled).all():  # a factorisation of NaN would exist
+        try:
+            np.linalg.cholesky(scaled @ scaled.T - REGULAR * len(rows) * np.eye(len(rows)))
+            return len(rows)
+        except np.linalg.LinAlgError:
+            pass
+    return int(ranks(rows, np.asarray(length)))
 
 
 def ranks(rows: Array, length: Array) -> NDArray[np.int_]:
