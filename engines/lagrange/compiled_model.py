@@ -231,20 +231,14 @@ class CompiledModel:
         reactions = np.full((len(poses), len(self.positions)), np.nan)
         accelerations = np.full((len(poses), 3 * len(self.mechanism.bodies)), np.nan)
         samples = _flat(poses, twists, reactions, accelerations)
-        self._call(CompiledTask.EVALUATION, ADAPTIVE_DOP853, samples, 0, 0, 1, dt, 0.0)
+        self._call(CompiledTask.EVALUATION, self._tableau, samples, 0, 0, 1, dt, 0.0)
         return reactions[:, self.positions], accelerations.reshape(poses.shape)
 
-    def _call(
-        self,
-        task: CompiledTask,
-        tableau: Tableau,
-        samples: Samples,
-        begin: int,
-        iterations: int,
-        every: int,
-        *reals: float,
-    ) -> int:
-        """Run a task; after each move of a window, run it again from the last completed sample."""
+    def _call(self, task: CompiledTask, tableau: Tableau, samples: Samples, begin: int, *settings: float) -> int:
+        """Run a task; after each move of a window, run it again from the last completed sample.
+
+        settings: iterations, every, dt and tolerance of `compiled.run.run`.
+        """
         if tableau is not self._tableau:
             self._tableau, self._tableau_block = tableau, block_of(tableau)
         run, status, states = compiled(), self.system.status, block_of(samples)
@@ -252,7 +246,7 @@ class CompiledModel:
         while True:
             status["missing_roll"] = -1
             blocks = self._system_block, self._storage_block, self._tableau_block, states
-            begin, done = done, run(task, *blocks, done, iterations, every, *reals)
+            begin, done = done, run(task, *blocks, done, *settings)
             moves = moves + 1 if done == begin else 0
             roll = int(status["missing_roll"])
             if roll < 0 or moves > MOST_MOVES or not self.windows.move(roll, float(status["missing_angle"])):

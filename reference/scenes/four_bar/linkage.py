@@ -52,10 +52,9 @@ def _cross(first: Any, second: Any) -> Any:
 # default tolerance of common packages (rtol 1e-3) the coupler's angle has an error of 0.02 rad after 1 and of 1 rad
 # after 100 revolutions.
 
-ADAPTIVE = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")  # Classes of scipy.integrate.
 # The stages' nodes, as fractions of the step, for methods with a fixed step.
 FIXED_STEP_NODES = {"euler": (0.0,), "rk4": (0.0, 0.5, 0.5, 1.0)}
-Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA"]
+Method = Literal["euler", "rk4", "RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA"]  # the last six are scipy's
 
 
 class RateIntegration(NamedTuple):
@@ -107,13 +106,13 @@ def integrate_rates(
 
     out = np.full((times.size, 3), np.nan)
     out[0] = start
-    if method in ADAPTIVE:
+    if method in FIXED_STEP_NODES:
+        evaluations, stopped = _fixed(odes, FIXED_STEP_NODES[method], times, out, every, limit)
+    else:
         from scipy import integrate
 
         solver = getattr(integrate, method)(odes, times[0], out[0].copy(), times[-1], rtol=rtol, atol=atol)
         evaluations, stopped = _adaptive(solver, times, out, limit)
-    else:
-        evaluations, stopped = _fixed(odes, FIXED_STEP_NODES[method], times, out, every, limit)
     return RateIntegration(times, out[:, 0], out[:, 1], out[:, 2], evaluations, stopped)
 
 
