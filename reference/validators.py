@@ -1,6 +1,6 @@
 """Validators check values by annotations and have words that describe valid values.
 
-`float` is a finite number and `int` an integer; a bool is neither. `ArrayLike` has numbers in any shape, and `NDArray`
+`float` is a finite number and `int` an integer; a bool is neither. `ArrayLike` has numbers in any shape, and `Array`
 is converted to an array of floats. Literal, tuple, unions and classes have the meaning that type checkers give them.
 `Annotated` adds a Rule, or allows NOT_FINITE or COMPLEX numbers. `Any` is not checked. `reference.checks` applies
 validators to fields and arguments.

@@ -16,11 +16,10 @@ import numpy as np
 
 from reference.checks import LARGEST_COUNT, InvalidMechanism, Numbers, Positive, Valid, index_of, validated
 from reference.plane import perpendicular, rotated
-from reference.rolling.curves import Array
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import FEWEST, STILL, Traced, spline
 from reference.trajectory import Trajectory
-from reference.validators import NOT_FINITE, from_to, of_shape
+from reference.validators import NOT_FINITE, Array, from_to, of_shape
 
 # Smallest rotation rate, relative to the largest, at which the instant centre counts as finite. The centre's distance
 # is then a million times the size of the motion.

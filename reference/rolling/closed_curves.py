@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
-from reference.rolling.curves import Array, Curve, along
+from reference.rolling.curves import Curve, along
+from reference.validators import Array
 
 # Number of tabulated points in half a turn. Cubic interpolation between the points has an error of at most 1e-9, except
 # for very flat ellipses.

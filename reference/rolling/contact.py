@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism
 from reference.plane import rotated
-from reference.rolling.curves import Array, Circle, Curve, Placed, Ring
+from reference.rolling.curves import Circle, Curve, Placed, Ring
+from reference.validators import Array
 
 
 @dataclass(frozen=True)

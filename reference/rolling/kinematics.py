@@ -14,8 +14,8 @@ from reference.checks import InvalidMechanism, Valid, validated
 from reference.numerics.roots import solve_increasing
 from reference.plane import rotated, rotation_acceleration, rotation_velocity
 from reference.rolling.contact import Contact, first_fit, refuse_conformal, refuse_overlap, signed_circle
-from reference.rolling.curves import Array, Curve, Line, Side
-from reference.validators import of_shape
+from reference.rolling.curves import Curve, Line, Side
+from reference.validators import Array, of_shape
 
 Place = Annotated[ArrayLike, of_shape("...", 2)]
 

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from reference.checks import InvalidMechanism, Positive, cached_readonly
 from reference.numerics.roots import solve_increasing
-from reference.rolling.curves import Array, ByArc, Curve, along, within
-from reference.validators import of_shape
+from reference.rolling.curves import ByArc, Curve, along, within
+from reference.validators import Array, of_shape
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline

@@ -17,8 +17,9 @@ from reference.numerics.integration import IntegrationFailed, units_of_motion
 from reference.numerics.roots import first_below
 from reference.plane import rotation_acceleration
 from reference.rolling.contact import Contact
-from reference.rolling.curves import Array, Vector
+from reference.rolling.curves import Vector
 from reference.rolling.kinematics import Rolling
+from reference.validators import Array
 
 GRAVITY = 9.81
 

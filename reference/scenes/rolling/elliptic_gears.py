@@ -15,12 +15,11 @@ from reference.mechanism import Mechanism
 from reference.plane import swung
 from reference.reactions import undetermined
 from reference.rolling.closed_curves import Ellipse
-from reference.rolling.curves import Array
 from reference.rolling.kinematics import Rolling
 from reference.rolling.roll import Roll
 from reference.scene import PlacedScene
 from reference.trajectory import Trajectory
-from reference.validators import from_to
+from reference.validators import Array, from_to
 
 
 @dataclass(frozen=True)

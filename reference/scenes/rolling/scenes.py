@@ -17,14 +17,14 @@ from reference.checks import Positive
 from reference.mechanism import Body, Mechanism
 from reference.plane import placed
 from reference.rolling.closed_curves import Cam, Ellipse
-from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring, Side, Vector
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary
 from reference.rolling.roll import Roll
 from reference.scene import Scene, shared
 from reference.scenes.rolling.body import GRAVITY, RollingBody
 from reference.trajectory import Trajectory
-from reference.validators import Rule
+from reference.validators import Array, Rule
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from reference.checks import InvalidMechanism, freeze
 from reference.joints import Pin
 from reference.mechanism import Mechanism
 from reference.plane import rotated
-from reference.rolling.curves import Array
 from reference.scenes.four_bar.scenes import DrivenFourBar
 from reference.trajectory import Trajectory
+from reference.validators import Array
 from reports.model.cells import Cell
 from reports.model.page import Material, Page
 from reports.model.tasks import Motion

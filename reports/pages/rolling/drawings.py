@@ -11,12 +11,13 @@ import numpy as np
 
 from reference.plane import rotated
 from reference.rolling.closed_curves import Ellipse
-from reference.rolling.curves import Array, Circle, Curve, Line, Placed, Ring, Side, Vector
+from reference.rolling.curves import Circle, Curve, Line, Placed, Ring, Side, Vector
 from reference.rolling.kinematics import Rolling
 from reference.rolling.open_curves import Catenary, Parabola
 from reference.rolling.roll import Roll
 from reference.scenes.rolling.elliptic_gears import EllipticGears
 from reference.scenes.rolling.scenes import RollingScene
+from reference.validators import Array
 from reports.plots.theme import LIGHT, bare, drawing, note, style_axes
 
 if TYPE_CHECKING:
