@@ -11,7 +11,7 @@ from scipy.special import jn_zeros
 
 from reference.scenes.n_four_bar import NFourBar, TenFourBars
 from reference.scenes.pendulum.chain import Chain
-from reference.scenes.pendulum.link import BarPendulum, Pendulum, PointPendulum, jacobi, quarter_period
+from reference.scenes.pendulum.link import BarPendulum, Pendulum, PointPendulum, incomplete, jacobi, quarter_period
 from reference.scenes.pendulum.scenes import HundredLinks, LinkPendulum, TenLinks
 from reference.scenes.person import (
     HEAD_ARMS_TRUNK,
@@ -41,6 +41,14 @@ def test_jacobi_functions_are_accurate_up_to_the_separatrix(complement: float) -
             assert abs(cn - exact_cn) < tolerance
             assert abs(dn / exact_dn - 1) < tolerance
             assert abs(math.sin(amplitude) - exact_sn) < tolerance
+
+
+def test_the_incomplete_integral_is_accurate_next_to_the_quarter_period() -> None:
+    for complement in (0.5, 1e-8, 1e-30):
+        for sine, cosine in ((0.3, 0.7), (1.0, 1e-9), (1.0, -1e-9), (-1.0, -0.2), (1.0, 0.0)):
+            with mpmath.workdps(60):
+                exact = mpmath.ellipf(mpmath.atan2(mpmath.mpf(sine), mpmath.mpf(cosine)), 1 - mpmath.mpf(complement))
+                assert abs(float(incomplete(sine, cosine, complement)) - exact) < 1e-15 * (1 + abs(exact))
 
 
 def test_the_period_of_small_swings_and_the_kinds_of_pendulum_motion() -> None:
