@@ -187,4 +187,4 @@ def test_the_key_of_machine_code_depends_on_every_layout_of_a_block(monkeypatch)
     read, names = Path.read_bytes, set()
     monkeypatch.setattr(Path, "read_bytes", lambda path: names.add(path.name) or read(path))
     loading.cache_key.__wrapped__()
-    assert {"records.py", "methods.py", "system.py", "elimination.py", "run.py", "blocks.py"} <= names
+    assert {"records.py", "methods.py", "system.py", "elimination.py", "run.py"} <= names

@@ -1,7 +1,7 @@
 """The equations of motion and the steps as functions that numba compiles. Only `engines.lagrange.loading` calls them.
 
 The functions change the arrays of a `records.System` and a `records.StepStorage`, and return numbers or booleans. They
-receive these arrays as pointers of `blocks.BlockType`. A division by zero gives an infinity or NaN, as in numpy. Numba
+receive these arrays as pointers of `run.BlockType`. A division by zero gives an infinity or NaN, as in numpy. Numba
 does not reorder sums, so results are equal on all processors.
 
 Reference counting is off (`_nrt`), since it would take longer than the computation; no function creates an array or
