@@ -207,15 +207,6 @@ def test_degrees_of_freedom_do_not_depend_on_the_unit_of_length(scale):
     assert freedoms == [(2, 2), (1, 1), (1, 1)]  # slot and motor are dependent, since the arm lies along x
 
 
-def test_a_pose_without_the_direction_of_a_rod_is_refused_by_name():
-    mechanism = Mechanism(
-        (Body("bob", 1.0, 1.0, (1.0, 0.0, 0.0)),), (Rod("rod", None, "bob", (0.0, 0.0), (0.0, 0.0), 1.0),)
-    )
-    assert mechanism.degrees_of_freedom() == (2, 2)
-    with pytest.raises(InvalidMechanism, match=r"row 'rod .*' is not finite at this pose"):
-        mechanism.degrees_of_freedom(np.zeros((1, 3)))
-
-
 def test_dependent_rows_are_undetermined_also_with_a_coefficient_of_a_thousandth():
     rows = np.zeros((4, 6))
     rows[0, 0] = rows[2, 1] = rows[3, 4] = 1.0  # Row 3 is independent.

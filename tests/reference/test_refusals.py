@@ -13,7 +13,7 @@ from reference.chapter.centrodes import centrodes, from_poses, poses_from_csv, s
 from reference.chapter.integrability import is_integrable
 from reference.chapter.skates import coriolis_factors, sidestep
 from reference.forces import Damper, Spring, Torque
-from reference.joints import Gear, Joint, Pin, Skate
+from reference.joints import Gear, Joint, Pin, Rod, Skate
 from reference.mechanism import Body, Mechanism
 from reference.rolling.closed_curves import Cam, Ellipse
 from reference.rolling.contact import NEAR_CONFORMAL
@@ -56,6 +56,10 @@ REFUSED: dict[str, tuple[Any, str]] = {
     "an unknown name": (lambda: hung(Pin("A", None, "c", (0, 0), (0, 0))), "no body is called 'c'; there are 'b'"),
     "a joint of one body": (lambda: hung(Pin("A", "b", "b", (0, 0), (0, 0))), "with itself"),
     "an open pin": (lambda: hung(Pin("A", None, "b", (0.1, 0), (-0.5, 0))), "'A x' is open by 0.1"),
+    "a pose without the direction of a rod": (
+        lambda: hung(Rod("R", None, "b", (0, 0), (0.5, 0), 1.0)).degrees_of_freedom([[-0.5, 0, 0]]),
+        "the row 'R.*' is not finite at this pose",
+    ),
     "a rate that no drive has": (lambda: four_bar(crank_rate=10.0, drive=9.0), "'drive torque' is moving apart at 1"),
     "a skate that slides": (
         lambda: Mechanism(
