@@ -90,6 +90,8 @@ def run_settings_sweep(
         if time.process_time() - begin + cost > plan.patience:
             continue
         for_parts = plan.goal is None and same_options[:1] == settings[:1] and len(same_options) <= SMALLER_STEPS
+        if same_options:  # As in `with_costs`, whose costs are compared below.
+            cost = same_options[0].cost * same_options[0].change.dt / change.dt
         tenth = a_tenth(settings, tolerance) if plan.goal is None else None
         dear = tenth is not None and cost > EQUAL_COST_FACTOR * tenth.cost
         dominated = plan.goal is None and _is_dominated(settings, same_options, change.dt, cost, tolerance)
