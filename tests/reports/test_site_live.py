@@ -81,9 +81,9 @@ def test_polygons_have_the_corners_that_lessons_state():
 
 def test_a_method_with_python_code_in_every_step_is_refused():
     sleigh = ChaplyginSleigh().mechanism()
-    with pytest.raises(Unsupported, match="needs our code in every step"):
+    with pytest.raises(Unsupported, match="runs in Python only"):
         mujoco_text(mujoco_engine.TUNED, sleigh, 1e-3)
-    with pytest.raises(Unsupported, match="needs Python code in every step"):
+    with pytest.raises(Unsupported, match="runs in Python only"):
         space_of(replace(pymunk_engine.DEFAULT, roll="pivot"), RollingDisc().mechanism(), 1.0)
 
 

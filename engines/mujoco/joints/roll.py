@@ -137,9 +137,11 @@ def _add_shape(builder: ModelBuilder, roll: Roll, owner: str | None, curve: Curv
                 f"roll {roll.name!r}: our adapter builds no hollow side; a height field or a plugin of MuJoCo has one"
             )
         case _:
+            shape = type(curve).__name__.lower()
             raise Unsupported(
-                f"roll {roll.name!r}: our adapter builds no shape like a {type(curve).__name__.lower()} in MuJoCo, but "
-                "planes, circles and ellipses"
+                f"roll {roll.name!r}: our adapter builds no shape like a {shape} in MuJoCo, but planes, circles and "
+                "ellipses",
+                lacking=f"our adapter builds no {shape}",
             )
 
 

@@ -30,12 +30,6 @@ from reports.site.live.sliders import ENGINES, NAMES, Live, Name
 DIGITS = 6  # decimal places of forces and their points
 PACKAGES: dict[Name, str] = {"munk": "pymunk", "mujoco": "mujoco-core"}
 
-# Short sentences for readers of the page, by a part of the engine's reason.
-SHORT_REASONS = {
-    "builds no shape like a cam": "our adapter builds no cam",
-    "needs our code in every step": "our code for it runs in Python only",
-}
-
 
 def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
     """Return the data of a live scene for JSON. A list over slider positions has the order of `Live.places`.
@@ -171,12 +165,7 @@ def _models(name: Name, engine: Any, live: Live, mechanisms: Sequence[Mechanism]
         needed = steps if not isinstance(engine.stiffness, Shipped) or loose(mechanisms[0]) else steps[:1]
         return {"models": [[vars(mujoco_text(engine, mechanism, step)) for step in needed] for mechanism in mechanisms]}
     except Unsupported as reason:
-        return {"why": shorten_reason(str(reason)), "idle": list(ENGINES[name])}
-
-
-def shorten_reason(reason: str) -> str:
-    """Return an engine's reason as the short sentence of the legend, or unchanged if there is no such sentence."""
-    return next((words for part, words in SHORT_REASONS.items() if part in reason), reason)
+        return {"why": reason.lacking or str(reason), "idle": list(ENGINES[name])}
 
 
 def drawing(live: Live, mechanism: Mechanism, pose: NDArray[np.float64]) -> dict[str, Any]:

@@ -23,6 +23,8 @@ from reference.mechanism import Mechanism
 from reports.site.drawn import index_of
 from reports.site.live.sliders import ENGINES, INTEGRATORS
 
+PYTHON_ONLY = "our code for it runs in Python only"  # why the page cannot run a method with our code in every step
+
 
 @dataclass(frozen=True)
 class MujocoText:
@@ -42,6 +44,8 @@ def mujoco_text(engine: MuJoCo, mechanism: Mechanism, step: float) -> MujocoText
     Raises Unsupported for a method with Python code in every step, since the page has no Python.
     """
     model = engine.model(mechanism, step, unit=1.0)
+    if model.hooks:
+        raise Unsupported(PYTHON_ONLY)
     springs = model.compiled.neq or model.compiled.npair
     return MujocoText(
         mjcf(model),
@@ -190,7 +194,7 @@ def _step_code(model: Model, mechanism: Mechanism) -> list[tuple[RecordKind, tup
     records: list[tuple[RecordKind, tuple[float, ...]]] = []
     for updates in (model.after_step, model.before_step):
         if updates and len(updates) != len(skates):
-            raise Unsupported("this method needs Python code in every step, which the page has not")
+            raise Unsupported(PYTHON_ONLY)
         for body, update in zip(skates, updates, strict=False):
             match update:
                 case Zeroed():
@@ -199,5 +203,5 @@ def _step_code(model: Model, mechanism: Mechanism) -> list[tuple[RecordKind, tup
                     row = list(model.space._constraints).index(update.constraint)
                     records.append((RecordKind.AIMED, (body, row, update._angle, update._back, update._front)))
                 case _:
-                    raise Unsupported("this method needs Python code in every step, which the page has not")
+                    raise Unsupported(PYTHON_ONLY)
     return records
