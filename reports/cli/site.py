@@ -16,10 +16,9 @@ from reports.cli.terminal import Terminal, opened
 from reports.model.ending import BadInput
 from reports.model.tasks import Answer, Motion
 from reports.run.files import folder_for
-from reports.site.build import build, tasks
+from reports.site.build import SiteSource, build, tasks
 from reports.site.folder import REMEDY, refuse_strangers, serve_folder, server, write_site
 from reports.site.generator import require_packages
-from reports.site.lesson import SiteSource
 from reports.site.packages import npm_trouble
 from reports.write.provenance import versions
 

@@ -6,7 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from html import escape
 from importlib.metadata import version
@@ -20,11 +20,11 @@ from engines import Unsupported
 from engines.lagrange import Lagrange
 from reference.scene import Scene
 from reports.model.outcomes import Outcome
-from reports.model.tasks import Motion
+from reports.model.tasks import Answer, Motion
 from reports.plots.looks import family_of, role
 from reports.site.animated import animation, shown
 from reports.site.generator import Documents, Extra, build_html, colours, lighten, quote_section, reference_sources
-from reports.site.lesson import Experiment, Guess, Lesson, LessonQuantity, SiteSource
+from reports.site.lesson import Experiment, Guess, Lesson, LessonQuantity
 from reports.site.lessons import LESSONS, PROBLEMS
 from reports.site.live.data import data, first_picture
 from reports.site.live.models import own_values
@@ -51,6 +51,22 @@ NUMBERS = ("position", "angle", "velocity", "gap", "energy", "reaction")
 ROW_KEY = ("scene", "engine", "variant", "purpose", "parameters", "settings", "samples", "every")
 
 Files = dict[str, bytes]
+
+
+@dataclass
+class SiteSource:
+    """The input of a site. Files are given as name -> text."""
+
+    pages: Mapping[str, str]
+    pictures: Mapping[str, str]
+    tables: Mapping[str, str]  # CSV files and programs
+    answers: Mapping[Motion, Answer]
+    cache: Path
+    foot: str
+    contributing: str = ""  # Text of CONTRIBUTING.md, from which pages quote; empty outside of a checkout.
+    api: bool = True  # Whether the site has a reference from docstrings, which takes a minute to build.
+    lecture: str = ""  # The notebook as JSON.
+    troubles: list[str] = field(default_factory=list)  # A message for each missing file.
 
 
 def tasks(lessons: Iterable[Lesson] = LESSONS) -> tuple[Motion, ...]:

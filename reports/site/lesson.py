@@ -12,12 +12,11 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass
+from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from types import NoneType
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
-from reports.model.tasks import Answer, Motion
 from reports.site.live.sliders import OWN, Live
 
 ASSETS = Path(__file__).parent / "assets"
@@ -146,23 +145,29 @@ def read_lesson(path: Path, scenes: Mapping[str, Live]) -> Lesson:
     heading, *parts = re.split("^#{1,2} ", text, flags=re.MULTILINE)[1:] or [""]
     place = "the title"
     try:
-        title, head, _ = split_part(heading)
+        title, head, lines = split_part(heading)
         if set(head) != {"page", "scenes"}:
             raise ValueError(f"the first TOML block has {', '.join(head) or 'nothing'} instead of page and scenes")
-        if unknown := [key for key in head["scenes"] if key not in scenes]:
+        page, keys = _value(str, head["page"], "page"), _value(tuple[str, ...], head["scenes"], "scenes")
+        if unknown := [key for key in keys if key not in scenes]:
             raise ValueError(f"no scene has the key {unknown[0]!r}")
-        lives = tuple(scenes[key] for key in head["scenes"])
-        lesson = Lesson(path.stem, title, head["page"], lives, (), ())
+        if lines:
+            raise ValueError("text stands before the heading of the first experiment")
+        lesson = Lesson(path.stem, title, page, tuple(scenes[key] for key in keys), (), ())
         experiments, solved = [], []
         for part in parts:
             place = part.partition("\n")[0]
             experiments.append(experiment_of(part, lesson))
-        for part in exercises.split("\n### ")[1:]:
+        place = "Exercises"
+        before, *others = exercises.split("\n### ")
+        if before.strip():
+            raise ValueError("text stands before the heading of the first exercise")
+        for part in others:
             place = part.partition("\n")[0]
             solved.append(exercise_of(part))
     except ValueError as reason:
         raise ValueError(f"{path.name}, {place!r}: {reason}") from None
-    return Lesson(path.stem, title, head["page"], lives, tuple(experiments), tuple(solved))
+    return replace(lesson, experiments=tuple(experiments), exercises=tuple(solved))
 
 
 def split_part(part: str) -> tuple[str, dict[str, Any], list[str]]:
@@ -180,6 +185,8 @@ def experiment_of(part: str, lesson: Lesson) -> Experiment:
     heading, settings, lines = split_part(part)
     quoted = [index for index, line in enumerate(lines) if line.startswith(">")] or [len(lines)]
     quotation = [line.removeprefix(">").strip() for line in lines[quoted[0] : quoted[-1] + 1]]
+    if len(quotation) > len(quoted):
+        raise ValueError("a part has one quotation, with a question and its answers")
     answers = [line.removeprefix("- ") for line in quotation if line.startswith("- ")]
     if answers and (len(answers) != 3 or sum(answer.startswith("**") for answer in answers) != 1):
         raise ValueError("a question has three answers, one of them right")
@@ -250,19 +257,3 @@ def exercise_of(text: str) -> Exercise:
         raise ValueError("an exercise has a heading, an answer, a unit and a solution")
     heading, answer, unit, question, solution = match.groups()
     return Exercise(heading, answer, unit, question, re.sub("^> ?", "", solution, flags=re.MULTILINE))
-
-
-@dataclass
-class SiteSource:
-    """The input of a site. Files are given as name -> text."""
-
-    pages: Mapping[str, str]
-    pictures: Mapping[str, str]
-    tables: Mapping[str, str]  # CSV files and programs
-    answers: Mapping[Motion, Answer]
-    cache: Path
-    foot: str
-    contributing: str = ""  # Text of CONTRIBUTING.md, from which pages quote; empty outside of a checkout.
-    api: bool = True  # Whether the site has a reference from docstrings, which takes a minute to build.
-    lecture: str = ""  # The notebook as JSON.
-    troubles: list[str] = field(default_factory=list)  # A message for each missing file.

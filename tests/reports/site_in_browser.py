@@ -18,9 +18,9 @@ import pytest
 from reference.scene import Scene
 from reports.cli.site import texts_of
 from reports.model.tasks import answered
-from reports.site.build import build, quantity_data, tasks
+from reports.site.build import SiteSource, build, quantity_data, tasks
 from reports.site.folder import server, write_site
-from reports.site.lesson import Claim, LessonQuantity, SiteSource
+from reports.site.lesson import Claim, LessonQuantity
 from reports.site.lessons import LESSONS
 from reports.site.live.sliders import ENGINES, INTEGRATORS, Live
 from tests import RESULTS
@@ -136,8 +136,8 @@ def running(chromium, address, files):
         page.context.close()
 
 
+FIXTURES = (address, chromium, files, opened, running)  # A test file assigns them to the names by which tests get them.
 BY_NAME = {lesson.name: lesson for lesson in LESSONS}
-
 
 # JavaScript that runs the engines of the page. `places`: indices of controls. `start`: initial pose, or null. `wanted`:
 # quantities.

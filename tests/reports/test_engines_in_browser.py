@@ -17,21 +17,9 @@ from reports.site.lesson import Claim
 from reports.site.lessons import LESSONS
 from reports.site.live.models import PYTHON_ONLY
 from reports.site.live.sliders import DOCUMENTED, ENGINES, Live
-from tests.reports.site_in_browser import (
-    BY_NAME,
-    address,
-    chromium,
-    files,
-    marked,
-    number_of,
-    opened,
-    python_of,
-    run_engines,
-    running,
-)
+from tests.reports.site_in_browser import BY_NAME, FIXTURES, marked, number_of, python_of, run_engines
 
-__all__ = ["address", "chromium", "files", "opened", "running"]
-
+address, chromium, files, opened, running = FIXTURES
 
 SCENES = [marked(lesson.name, live.word) for lesson in LESSONS for live in lesson.scenes]
 # Largest difference between an engine in the page and in Python, relative to the size of the motion. Differences are

@@ -8,20 +8,9 @@ import numpy as np
 import pytest
 
 from reference.chapter.centrodes import instant_centre
-from tests.reports.site_in_browser import (
-    BY_NAME,
-    PHONE,
-    TALL,
-    address,
-    chromium,
-    files,
-    marked,
-    new_page,
-    opened,
-    running,
-)
+from tests.reports.site_in_browser import BY_NAME, FIXTURES, PHONE, TALL, marked, new_page
 
-__all__ = ["address", "chromium", "files", "opened", "running"]
+address, chromium, files, opened, running = FIXTURES
 
 
 def test_the_address_stores_only_changes_by_the_reader(opened):

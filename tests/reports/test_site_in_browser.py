@@ -8,18 +8,9 @@ import pytest
 
 from reports.site.folder import compressed_size
 from reports.site.lessons import LESSONS
-from tests.reports.site_in_browser import (
-    PHONE,
-    address,
-    chromium,
-    files,
-    marked,
-    new_page,
-    opened,
-    running,
-)
+from tests.reports.site_in_browser import FIXTURES, PHONE, marked, new_page
 
-__all__ = ["address", "chromium", "files", "opened", "running"]
+address, chromium, files, opened, running = FIXTURES
 
 
 @pytest.mark.parametrize("stride", [4, pytest.param(1, marks=pytest.mark.slow)])

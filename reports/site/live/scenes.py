@@ -39,17 +39,17 @@ DRIVEN = Live(
     traces=(("coupler", (0.0, 0.0)),),
     centre="coupler",
 )
-FREE = Live(
-    "let go",
-    FreeFourBar(),
-    (25, 50, 100, 200, 500, 1000, 2000),
-    50,
-    3,
-    (
+FREE = replace(
+    DRIVEN,
+    word="let go",
+    scene=FreeFourBar(),
+    steps=(25, 50, 100, 200, 500, 1000, 2000),
+    frames=50,
+    sliders=(
         Slider("crank", "crank [m]", (0.3, 0.4, 0.45)),
         replace(DENSITY, values=((1.0, 0.01, 1.0), 1.0, (1.0, 100.0, 1.0)), texts=("0.01", "1", "100")),
     ),
-    traces=DRIVEN.traces,
+    centre=None,
 )
 FOUR_BARS = (
     DRIVEN,
