@@ -109,7 +109,7 @@ def configure(extra: Path) -> dict[str, Any]:
         "html_copy_source": False,
         "html_show_sphinx": False,
         "html_show_copyright": False,
-        "templates_path": [str(HERE / "templates"), str(HERE / "assets")],
+        "templates_path": [str(HERE / folder) for folder in ("templates", "assets", "static")],
         "default_role": "code",
         "smartquotes": False,  # headings are looked up by their text, and options have two hyphens
         "myst_enable_extensions": ["dollarmath"],
