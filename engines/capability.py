@@ -14,8 +14,8 @@ from reference.mechanism import Mechanism
 class Unsupported(Exception):
     """An engine cannot represent this mechanism; the message is one sentence that says why.
 
-    If an engine has no element of a kind, the exception has these fields. Otherwise the fields are "", but `lacking` may
-    have a short form of the sentence.
+    If an engine has no element of a kind, the exception has these fields. Otherwise the fields are "", but `lacking`
+    may have a short form of the sentence.
 
     engine: the engine's name.
     kind: the name of the element's class.
