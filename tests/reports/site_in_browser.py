@@ -145,11 +145,11 @@ RUN_ENGINES = """async ([scene, places, start, wanted]) => {
   const { ask, form } = window.crosscheck;
   form.move(scene, places);
   const setting = form.setting(start);
-  const told = await ask({ setting, quantities: wanted });
-  const missed = told.exact.computed ? await ask({ kind: "check", setting }) : null;
-  return { exact: { pose: [...told.exact.pose], missed }, lost: told.lost, idle: told.idle,
-    own: told.own, quantities: Object.fromEntries(told.quantities.map(({ kind, found }) => [kind, found])),
-    motions: Object.fromEntries(told.motions.map(({ name, pose, twist, error, why, apart }) =>
+  const answer = await ask({ setting, quantities: wanted });
+  const missed = answer.exact.computed ? await ask({ kind: "check", setting }) : null;
+  return { exact: { pose: [...answer.exact.pose], missed }, lost: answer.lost, idle: answer.idle,
+    own: answer.own, quantities: Object.fromEntries(answer.quantities.map(({ kind, found }) => [kind, found])),
+    motions: Object.fromEntries(answer.motions.map(({ name, pose, twist, error, why, apart }) =>
       [name, { pose: [...pose], twist: [...twist], error, why, apart }])) };
 }"""
 

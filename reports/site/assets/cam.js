@@ -1,7 +1,7 @@
 // @ts-check
 /** Two shapes from a drawn motion: the reader draws the path of a point of a body that turns once, and both centrodes follow. */
 
-import { ARROWS, onDrag, placed, pointerIn, put } from "./motion.js";
+import { ARROWS, onDrag, pathThrough, placed, pointerIn, put } from "./motion.js";
 import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {import("./motion.js").Point} Point
@@ -90,7 +90,7 @@ export function once(points) {
 /** Return whether both shapes are curves that do not cross themselves. @param {Shapes} shapes */
 const cuttable = ({ space, body }) => extent(space) > SMALL && !crosses(space) && !crosses(body);
 
-const line = (/** @type {Point[]} */ points) => `M${points.map(([x, y]) => `${x.toFixed(7)} ${y.toFixed(7)}`).join("L")}Z`;
+const line = (/** @type {Point[]} */ points) => `${pathThrough(points, 7)}Z`;
 
 /** Return both shapes as an SVG, side by side at one scale, 1 m of the drawing as 100 mm. @param {Shapes} shapes */
 export function asSvg({ space, body }) {
@@ -131,6 +131,7 @@ function begin(place) {
     '<label class="time">place on the path <input type="range" min="0" max="360" value="0"></label>' +
     '<button type="button" data-file="svg">Download SVG</button><button type="button" data-file="dxf">Download DXF</button></div><p class="count" role="status"></p>';
   const find = (/** @type {string} */ name) => /** @type {SVGElement} */ (place.querySelector(name));
+  const count = /** @type {HTMLElement} */ (place.querySelector(".count"));
   const drawing = /** @type {SVGSVGElement} */ (/** @type {unknown} */ (find("svg")));
   const turns = /** @type {HTMLSelectElement} */ (place.querySelector("select"));
   const angle = /** @type {HTMLInputElement} */ (place.querySelector("input"));
@@ -153,7 +154,7 @@ function begin(place) {
     const [fixed, moving] = [extent(shapes.space), extent(shapes.body)];
     const still = fixed < SMALL;
     for (const button of place.querySelectorAll("[data-file]")) button.toggleAttribute("disabled", still);
-    /** @type {HTMLElement} */ (place.querySelector(".count")).textContent = still ? "The body only turns about one fixed point, so both shapes are that point. Draw another path, or choose another number of turns."
+    count.textContent = still ? "The body only turns about one fixed point, so both shapes are that point. Draw another path, or choose another number of turns."
       : `The fixed shape is ${fixed.toFixed(3)} m wide, the moving shape ${moving.toFixed(3)} m. The moving shape rolls on the fixed one, and the dot of the body then follows the drawn path.` +
         (crosses(shapes.space) || crosses(shapes.body) ? " A shape crosses itself, so it cannot be cut from one piece: draw a rounder path, or choose another number of turns." : "");
     turnTo();
@@ -201,7 +202,7 @@ function begin(place) {
       stored();
     } else make();
     const [x, y] = shapes.path[selected()];
-    /** @type {HTMLElement} */ (place.querySelector(".count")).prepend(`The path at ${angle.value}° is at (${x.toFixed(2)}, ${y.toFixed(2)}) m. `);
+    count.prepend(`The path at ${angle.value}° is at (${x.toFixed(2)}, ${y.toFixed(2)}) m. `);
   });
   for (const button of place.querySelectorAll("button")) {
     const { motion, file } = button.dataset;

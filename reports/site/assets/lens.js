@@ -3,7 +3,7 @@
 
 import { svg } from "./chart.js";
 import { rows } from "./exact.js";
-import { gapsOf, grouped, told } from "./motion.js";
+import { gapsOf, grouped, pathThrough, formatNumber } from "./motion.js";
 
 /** @typedef {import("./motion.js").Take} Take */
 /** @typedef {{pose: Float64Array, twist: Float64Array, impulses: Float64Array, left: number}} Sweep */
@@ -62,17 +62,16 @@ export class Lens {
       if (!Number.isFinite(away)) return `${label}: lost`;
       const group = svg("g", { class: `method-${mark}` });
       const trail = Array.from({ length: Math.min(TRAIL, frame) + 1 }, (_, back) => joint.at(motion, frame - back)).filter(([a, b]) => Number.isFinite(a + b));
-      const path = trail.map(([a, b], index) => `${index ? "L" : "M"}${(middle + factor * a).toFixed(1)} ${(middle - factor * b).toFixed(1)}`).join("");
-      group.append(svg("path", { class: "line", d: path }));
+      group.append(svg("path", { class: "line", d: pathThrough(trail.map(([a, b]) => [middle + factor * a, middle - factor * b]), 1) }));
       group.append(svg("path", { class: mark === 2 && joint.unit === "m" ? "spring" : "gap", d: zigzag(middle, middle, middle + factor * x, middle - factor * y, mark === 2 && joint.unit === "m") }));
       group.append(svg("circle", { class: "dot", cx: middle + factor * x, cy: middle - factor * y, r: 5 }));
       parts.push(group);
-      return `${label} ${told(away).replace("e-", "e\u2011")} ${joint.unit}`;
+      return `${label} ${formatNumber(away).replace("e-", "e\u2011")} ${joint.unit}`;
     });
     const bar = 10 ** Math.floor(Math.log10((0.5 * SIZE) / (factor || 1)));
     if (factor) {
       parts.push(svg("line", { class: "bar", x1: 10, x2: 10 + bar * factor, y1: SIZE - 12, y2: SIZE - 12 }));
-      parts.push(svg("text", { x: 10, y: SIZE - 18 }, `${told(bar)} ${joint.unit}`));
+      parts.push(svg("text", { x: 10, y: SIZE - 18 }, `${formatNumber(bar)} ${joint.unit}`));
     }
     this.picture.replaceChildren(...parts);
     const enlarged = this.scaled ? factor / this.scaled / this.enlarged : 0;
@@ -99,14 +98,14 @@ export class Lens {
       const now = remaining(joint, found[number], step);
       const [before, after] = [number - 1, number].map((at) => found[at]?.impulses.slice(2 * own, 2 * own + 2) ?? [0, 0]);
       const row = document.createElement("tr");
-      for (const text of [joint.name, number ? told(Math.hypot(after[0] - before[0], after[1] - before[1])) : "–", told(now)]) row.insertCell().textContent = text;
+      for (const text of [joint.name, number ? formatNumber(Math.hypot(after[0] - before[0], after[1] - before[1])) : "–", formatNumber(now)]) row.insertCell().textContent = text;
       const bar = document.createElement("span");
       bar.className = "share";
       bar.style.width = `${now > 0 ? Math.max(0, 100 + (100 * Math.log10(now / worst)) / 8).toFixed(1) : 0}%`;
       row.insertCell().append(bar);
       return row;
     }));
-    return `One step of pymunk, ${told(1000 * step)} ms long, after iteration ${number + 1} of ${whole}:`;
+    return `One step of pymunk, ${formatNumber(1000 * step)} ms long, after iteration ${number + 1} of ${whole}:`;
   }
 }
 
@@ -122,10 +121,8 @@ function zigzag(x1, y1, x2, y2, spring) {
   const points = spring ? 12 : 1;
   const length = Math.hypot(x2 - x1, y2 - y1) || 1;
   const [nx, ny] = [(4 * (y1 - y2)) / length, (4 * (x2 - x1)) / length];
-  let path = `M${x1.toFixed(1)} ${y1.toFixed(1)}`;
-  for (let point = 1; point <= points; point++) {
-    const side = point === points ? 0 : point % 2 ? 1 : -1;
-    path += `L${(x1 + ((x2 - x1) * point) / points + side * nx).toFixed(1)} ${(y1 + ((y2 - y1) * point) / points + side * ny).toFixed(1)}`;
-  }
-  return path;
+  return pathThrough(Array.from({ length: points + 1 }, (_, point) => {
+    const side = point % points === 0 ? 0 : point % 2 ? 1 : -1;
+    return [x1 + ((x2 - x1) * point) / points + side * nx, y1 + ((y2 - y1) * point) / points + side * ny];
+  }), 1);
 }

@@ -3,7 +3,7 @@
 
 import { dragged } from "./exact.js";
 import { Form } from "./form.js";
-import { MARKS, NAMES, told } from "./motion.js";
+import { MARKS, NAMES, formatNumber } from "./motion.js";
 import { Player } from "./player.js";
 import { cell, expected } from "./quantities.js";
 
@@ -12,14 +12,17 @@ import { cell, expected } from "./quantities.js";
 
 const root = /** @type {HTMLElement} */ (document.getElementById("lesson"));
 const find = (/** @type {string} */ name) => /** @type {HTMLElement} */ (root.querySelector(name));
+/** Return an element of an engine's entry in the legend. @param {string} name @param {"way"|"figure"} part */
+const legend = (name, part) => find(`.legend .method-${MARKS[name]} .${part}`);
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const figure = find("figure");
 const player = new Player(figure);
 const form = new Form(root);
 const lens = player.lens;
+const parts = /** @type {HTMLElement[]} */ ([...root.querySelectorAll(".part")]);
 /** @type {Worker|null} */
 let worker = null;
-/** @type {Map<number, {resolve: (told: any) => void, reject: (why: Error) => void}>} */
+/** @type {Map<number, {resolve: (result: any) => void, reject: (why: Error) => void}>} */
 const asked = new Map();
 let number = 0;
 let scrolled = false; // whether the reader has scrolled; only then the experiment in the window is shown
@@ -49,11 +52,11 @@ function load() {
   if (worker) return;
   const base = new URL(root.dataset.folder ?? "", document.baseURI).href;
   worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
-  worker.onmessage = ({ data: { id, told: answer, why } }) => {
+  worker.onmessage = ({ data: { id, result, why } }) => {
     const one = asked.get(id);
     asked.delete(id);
     if (why) one?.reject(new Error(why));
-    else one?.resolve(answer);
+    else one?.resolve(result);
   };
   worker.onerror = (event) => failed(new Error(event.message || "their script could not be loaded. Check the network, then reload the page"));
   ask({ kind: "load", folder: base, packages: `${base}packages/`, wanted: (root.dataset.engines ?? "").split(" ") }).catch(failed);
@@ -62,7 +65,7 @@ function load() {
 
 /** @param {unknown} reason */
 function failed(reason) {
-  for (const mark of Object.values(MARKS)) find(`.legend .method-${mark} .figure`).textContent = "";
+  for (const name in NAMES) legend(name, "figure").textContent = "";
   find(".status").textContent = `The engines could not be run: ${reason instanceof Error ? reason.message : reason}`;
 }
 
@@ -70,12 +73,12 @@ function failed(reason) {
  * the new settings at once. @param {boolean} play */
 function run(play) {
   if (startScene !== form.index) start = null;
-  const ways = Object.fromEntries(Object.keys(NAMES).map((name) => [name, [form.words(name), ...form.changed(name)].join(", ")]));
+  const ways = Object.fromEntries(Object.keys(NAMES).map((name) => [name, [NAMES[name], form.words(name), ...form.changed(name)].join(", ")]));
   waiting = { setting: form.setting(start), play, ways };
   form.label(shown?.idle ?? [], shown?.own ?? {});
   for (const name in NAMES) {
-    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}`;
-    find(`.legend .method-${MARKS[name]} .figure`).textContent = "…";
+    legend(name, "way").textContent = ways[name];
+    legend(name, "figure").textContent = "…";
   }
   if (!busy) requestAnimationFrame(next);
 }
@@ -117,10 +120,10 @@ function stage({ drawing, motions }) {
 async function show(answer, play, ways) {
   shown = answer;
   const { motions, lost } = answer;
+  const motionOf = (/** @type {string} */ name) => motions.find((/** @type {any} */ each) => each.name === name);
   player.stop();
   player.stage.outerHTML = stage(answer);
-  const spring = motions.find((/** @type {any} */ { name }) => name === "mujoco")?.spring;
-  find(".springs").textContent = springWords(spring, answer);
+  find(".springs").textContent = springWords(motionOf("mujoco"), answer);
   player.load(answer);
   await pause();
   lens.load(answer); // the width of the chart depends on whether there is a lens
@@ -129,16 +132,14 @@ async function show(answer, play, ways) {
   await pause();
   lens.scale();
   for (const name in NAMES) {
-    const entry = find(`.legend .method-${MARKS[name]}`);
-    const stored = motions.find((/** @type {any} */ one) => one.name === name)?.why;
-    find(`.legend .method-${MARKS[name]} .way`).textContent = `${NAMES[name]}, ${ways[name]}${stored ? " (stored)" : ""}`;
-    entry.classList.toggle("lost", name in lost);
-    if (name in lost) find(`.legend .method-${MARKS[name]} .figure`).textContent = lost[name];
+    legend(name, "way").textContent = `${ways[name]}${motionOf(name)?.why ? " (stored)" : ""}`;
+    find(`.legend .method-${MARKS[name]}`).classList.toggle("lost", name in lost);
+    if (name in lost) legend(name, "figure").textContent = lost[name];
   }
   form.label(answer.idle, answer.own);
   find(".status").textContent = statusOf(answer, null);
   root.classList.add("ready");
-  find(".next").hidden = !motions.some((/** @type {any} */ { name, impulses }) => name === "munk" && impulses) || !answer.joints.length;
+  find(".next").hidden = !motionOf("munk")?.impulses || !answer.joints.length;
   find(".sweeps").hidden = true;
   figure.classList.add("can-grab");
   find(".frame").tabIndex = answer.mechanism ? 0 : -1;
@@ -149,21 +150,21 @@ async function show(answer, play, ways) {
   }
 }
 
-/** Return a text on the spring that closes MuJoCo's loop. @param {any} spring @param {Answer} answer */
-function springWords(spring, { joints, blades, motions, forces }) {
-  if (!(joints.length + blades.length) || !motions.some((/** @type {any} */ { name }) => name === "mujoco")) return "";
+/** Return a text on the spring that closes MuJoCo's loop. @param {any} motion of MuJoCo, or undefined @param {Answer} answer */
+function springWords(motion, { joints, blades, forces }) {
+  if (!motion || !(joints.length + blades.length)) return "";
   const contact = blades.length || forces.some((/** @type {any} */ each) => each.contact);
-  if (!spring) return contact ? "" : "MuJoCo needs no spring here: its joints are hinges of a tree, which cannot open.";
-  const [k, b, impedance] = spring; // stiffness [1/s^2] and damping [1/s] for a unit of inertia, impedance [1]
-  return `MuJoCo enforces this ${contact ? "contact" : "loop"} by a spring and a damper: a gap decays in about ${told(2000 / b)} ms, and an acceleration a that opens it leaves a gap of (1 − d)/(d k) a: ${told((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
+  if (!motion.spring) return contact ? "" : "MuJoCo needs no spring here: its joints are hinges of a tree, which cannot open.";
+  const [k, b, impedance] = motion.spring; // stiffness [1/s^2] and damping [1/s] for a unit of inertia, impedance [1]
+  return `MuJoCo enforces this ${contact ? "contact" : "loop"} by a spring and a damper: a gap decays in about ${formatNumber(2000 / b)} ms, and an acceleration a that opens it leaves a gap of (1 − d)/(d k) a: ${formatNumber((1 - impedance) / (impedance * k) * 1e6)} µm for each m/s².`;
 }
 
 /** @param {Answer} answer @param {number|null} missed the error of the page's exact motion; null: not known */
 function statusOf({ exact, motions, versions, release }, missed) {
-  const error = missed === null ? "" : `, with an error of at most ${told(Math.max(missed, 1e-15))} m or rad`;
+  const error = missed === null ? "" : `, with an error of at most ${formatNumber(Math.max(missed, 1e-15))} m or rad`;
   const own = exact.computed ? `The page computes this exact motion itself${error}. ` : "";
   const apart = motions.filter((/** @type {any} */ each) => each.apart !== null).map((/** @type {any} */ { name, apart: by }) =>
-    `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python differ by at most ${told(by)} m or rad.`);
+    `${NAMES[name]} in the page${name === "mujoco" ? ` (${release})` : ""} and ${versions[name]} in Python differ by at most ${formatNumber(by)} m or rad.`);
   const stored = motions.filter((/** @type {any} */ each) => each.why).map((/** @type {any} */ { name, why }) =>
     `${NAMES[name]}: ${why}. The picture shows the stored motion of Python.`);
   return own + [...apart, ...stored].join(" ");
@@ -188,17 +189,16 @@ function select(part, places) {
 /** Run the settings before and after the change, and those that a wrong answer proposes; show them side by side.
  * @param {HTMLElement} part @param {HTMLElement} button */
 async function guessed(part, button) {
-  for (const each of part.querySelectorAll(".answers button")) {
-    each.classList.toggle("chosen", each === button);
+  for (const each of /** @type {NodeListOf<HTMLElement>} */ (part.querySelectorAll(".answers button"))) {
     each.setAttribute("aria-pressed", String(each === button));
-    each.classList.toggle("right", each instanceof HTMLElement && each.dataset.right !== undefined);
+    each.classList.toggle("right", each.dataset.right !== undefined);
   }
   const right = button.dataset.right !== undefined;
   const why = /** @type {HTMLDetailsElement} */ (part.querySelector(".why"));
-  const said = /** @type {HTMLElement} */ (part.querySelector(".measured"));
+  const measured = /** @type {HTMLElement} */ (part.querySelector(".measured"));
   const verdict = right ? "Right." : "Not so.";
   if (part.dataset.after === "{}") {
-    [why.open, said.textContent] = [true, verdict]; // the question is not about an engine
+    [why.open, measured.textContent] = [true, verdict]; // the question is not about an engine
     return;
   }
   const own = right || !button.dataset.change ? null : JSON.parse(button.dataset.change);
@@ -218,7 +218,7 @@ async function guessed(part, button) {
   }
   stageOf(part, runs[1].places, true);
   why.open = true;
-  said.textContent = answers.includes(undefined) ? verdict : `${verdict} Largest errors:`;
+  measured.textContent = answers.includes(undefined) ? verdict : `${verdict} Largest errors:`;
   if (!answers.includes(undefined)) compare(part, runs, answers, right ? null : button);
 }
 
@@ -279,15 +279,13 @@ function restored() {
 }
 
 function begin() {
-  for (const part of root.querySelectorAll(".part")) {
-    if (!(part instanceof HTMLElement)) continue;
-    for (const button of part.querySelectorAll(".answers button")) {
-      if (button instanceof HTMLElement) button.addEventListener("click", () => guessed(part, button));
+  for (const part of parts) {
+    for (const button of /** @type {NodeListOf<HTMLElement>} */ (part.querySelectorAll(".answers button"))) {
+      button.addEventListener("click", () => guessed(part, button));
     }
     part.querySelector(".set")?.addEventListener("click", () => stageOf(part, {}, true));
   }
-  for (const button of root.querySelectorAll("button[data-way]")) {
-    if (!(button instanceof HTMLElement)) continue;
+  for (const button of /** @type {NodeListOf<HTMLElement>} */ (root.querySelectorAll("button[data-way]"))) {
     button.addEventListener("click", () => {
       start = null;
       form.move(form.index, { munk: Number(button.dataset.way), mujoco: Number(button.dataset.way) });
@@ -329,7 +327,6 @@ function begin() {
   addEventListener("scroll", () => (scrolled ||= !jumping), { passive: true });
   // The picture shows the experiment on a line across the window, which a phone has below its picture. The first experiment loads the engines.
   const linked = restored();
-  const parts = [...root.querySelectorAll(".part")];
   const looking = new IntersectionObserver((entries) => {
     const near = entries.filter(({ target, isIntersecting }) => isIntersecting && !target.classList.contains("shown"));
     for (const { target } of scrolled ? near : []) {
@@ -338,7 +335,7 @@ function begin() {
   }, { rootMargin: matchMedia("(max-width: 52rem)").matches ? "-48% 0px -52% 0px" : "-28% 0px -72% 0px" });
   for (const part of parts) looking.observe(part);
   // The load event would lay out these changes together with the page.
-  if (!linked) pause().then(() => !waiting && !busy && parts[0] instanceof HTMLElement && stageOf(parts[0], {}, true));
+  if (!linked) pause().then(() => !waiting && !busy && stageOf(parts[0], {}, true));
   addEventListener("hashchange", restored);
   Object.assign(window, { crosscheck: { ask, form, setting: () => form.setting(start) } });
 }

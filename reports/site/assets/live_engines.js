@@ -11,16 +11,16 @@ const BODY = 11; // numbers of a body
 
 /** Return poses and twists at the samples by MuJoCo, and the spring of its first constraint row at the end. @param {any} mujoco @param {Run} run */
 export function runMujoco(mujoco, run) {
-  const told = /** @type {Text} */ (modelOf(run, "mujoco"));
-  const model = mujoco.MjModel.from_xml_string(told.text);
+  const plan = /** @type {Text} */ (modelOf(run, "mujoco"));
+  const model = mujoco.MjModel.from_xml_string(plan.text);
   const data = new mujoco.MjData(model);
   try {
     const own = chosen(model);
     set(model, run);
     mujoco.mj_resetDataKeyframe(model, data, 0);
-    if (run.start) begin(run, told, data);
+    if (run.start) begin(run, plan, data);
     mujoco.mj_forward(model, data);
-    return { ...states(run, told, mujoco, model, data), spring: data.nefc ? [...data.efc_KBIP.slice(0, 3)] : null, own };
+    return { ...states(run, plan, mujoco, model, data), spring: data.nefc ? [...data.efc_KBIP.slice(0, 3)] : null, own };
   } finally {
     data.delete();
     model.delete();
@@ -55,11 +55,11 @@ function set(model, run) {
   }
 }
 
-/** Set the coordinates from the poses at which the reader released the mechanism. @param {Run} run @param {Text} told @param {any} data */
-function begin(run, told, data) {
+/** Set the coordinates from the poses at which the reader released the mechanism. @param {Run} run @param {Text} plan @param {any} data */
+function begin(run, plan, data) {
   const now = /** @type {import("./exact.js").Mechanism} */ (mechanismOf(run));
   const old = /** @type {import("./exact.js").Mechanism} */ (mechanismOf({ ...run, start: null }));
-  for (const [body, parent, rotation, slide, dx, dy] of told.links) {
+  for (const [body, parent, rotation, slide, dx, dy] of plan.links) {
     const moved = (/** @type {number} */ own, /** @type {number} */ axis) => (own < 0 ? 0 : now.pose[3 * own + axis] - old.pose[3 * own + axis]);
     const rate = (/** @type {number} */ own) => (own < 0 ? 0 : now.twist[3 * own + 2]);
     if (rotation >= 0) {
@@ -73,8 +73,8 @@ function begin(run, told, data) {
   }
 }
 
-/** @param {Run} run @param {Text} told @param {any} mujoco @param {any} model @param {any} data */
-function states(run, told, mujoco, model, data) {
+/** @param {Run} run @param {Text} plan @param {any} mujoco @param {any} model @param {any} data */
+function states(run, plan, mujoco, model, data) {
   const { samples, every, step } = run;
   const compiled = { ...run, start: null };
   const first = mechanismOf(compiled)?.pose ?? truth(compiled).pose; // tree coordinates are changes of angles
@@ -84,8 +84,8 @@ function states(run, told, mujoco, model, data) {
     const { xpos, qpos, cvel, subtree_com: com } = data;
     /** @type {number[]} */
     const turned = [];
-    for (const [body, parent, rotation] of told.links) turned[body] = (turned[parent] ?? 0) + (rotation < 0 ? 0 : qpos[rotation]);
-    return told.bodies.flatMap((own, body) => {
+    for (const [body, parent, rotation] of plan.links) turned[body] = (turned[parent] ?? 0) + (rotation < 0 ? 0 : qpos[rotation]);
+    return plan.bodies.flatMap((own, body) => {
       const [x, y] = [xpos[3 * own], xpos[3 * own + 1]];
       const [rate, vx, vy] = cvel.subarray(6 * own + 2, 6 * own + 5); // velocity at the centre of mass of the tree
       const root = 3 * model.body_rootid[own];
@@ -100,7 +100,7 @@ function states(run, told, mujoco, model, data) {
     if (!(Math.abs(data.time - sample * every * step) < step / 2)) break;
     found.push(state());
   }
-  while (found.length <= samples) found.push(new Array(6 * told.bodies.length).fill(NaN));
+  while (found.length <= samples) found.push(new Array(6 * plan.bodies.length).fill(NaN));
   return split(found);
 }
 

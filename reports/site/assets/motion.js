@@ -37,8 +37,8 @@ export const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1],
 
 /** Call `begin` for a pointer that is pressed on an element, `move` while it is held, and `end` when it is released. `begin`
  * may return false: then the pointer is not held. @param {GlobalEventHandlers & Element & HTMLOrSVGElement} element
- * @param {{begin: (event: PointerEvent) => boolean|void, move: (event: PointerEvent) => void, end?: () => void}} calls */
-export function onDrag(element, { begin, move, end = () => {} }) {
+ * @param {{begin?: (event: PointerEvent) => boolean|void, move: (event: PointerEvent) => void, end?: () => void}} calls */
+export function onDrag(element, { begin = () => {}, move, end = () => {} }) {
   let held = false;
   const release = () => {
     if (held) end();
@@ -49,7 +49,7 @@ export function onDrag(element, { begin, move, end = () => {} }) {
     held = true;
     element.setPointerCapture(event.pointerId);
     event.preventDefault();
-    element.focus();
+    element.focus({ preventScroll: true });
   });
   element.addEventListener("pointermove", (event) => {
     if (held) move(event);
@@ -71,6 +71,15 @@ export function placed([x, y, angle], [a, b]) {
   const cosine = Math.cos(angle);
   const sine = Math.sin(angle);
   return [x + cosine * a - sine * b, y + sine * a + cosine * b];
+}
+
+/** Return the path of a line through points for an SVG; "" without points. @param {number[][]} points @param {number} digits after the point */
+export const pathThrough = (points, digits) => points.length ? `M${points.map((point) => point.map((value) => value.toFixed(digits)).join(" ")).join("L")}` : "";
+
+/** Return the distance of a body's point from a place. @param {number[]} pose @param {number[]} point @param {number[]} place */
+export function distance(pose, point, [x, y]) {
+  const [px, py] = placed(pose, point);
+  return Math.hypot(px - x, py - y);
 }
 
 /** Return the two points of a pin at an instant, or the nearest point of a slot's line and the point on the second body.
@@ -148,7 +157,7 @@ export function instantCentre([x, y], [vx, vy, rate]) {
 export const grouped = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, ",");
 
 /** Format a number with two digits; a small or large number has a power of ten. @param {number} value */
-export function told(value) {
+export function formatNumber(value) {
   if (!Number.isFinite(value)) return "lost";
   if (value === 0) return "0";
   const size = Math.abs(value);

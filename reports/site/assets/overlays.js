@@ -2,7 +2,7 @@
 /** Overlays of a picture: forces, the friction that rolling requires, instant centres. */
 
 import { svg } from "./chart.js";
-import { instantCentre, poseAt, told } from "./motion.js";
+import { instantCentre, poseAt, formatNumber } from "./motion.js";
 
 /** @typedef {import("./motion.js").Take} Take @typedef {import("./motion.js").Point} Point */
 /** @typedef {{take: Take, frame: number, overlay: SVGGElement, width: number}} Scene the target of a drawing */
@@ -59,7 +59,7 @@ function drawForces(scene) {
     if (each.contact) scene.overlay.append(svg("circle", { class: "contact", cx: place[0], cy: place[1], r: 0.008 * width }));
   }
   const partly = take.forces.some((each) => each.partly) ? " The motion does not determine all of these forces: drawn is the part that it does." : "";
-  return `The longest arrow of this motion is ${told(largest)} N.${partly}`;
+  return `The longest arrow of this motion is ${formatNumber(largest)} N.${partly}`;
 }
 
 /** Draw the two components of the contact force, and the friction coefficient that they require. @param {Scene} scene */
@@ -73,10 +73,10 @@ function drawFriction(scene) {
     arrow(scene, at(places, frame), [scale * nx, scale * ny], "normal");
     arrow(scene, at(places, frame), [scale * (fx - nx), scale * (fy - ny)], "");
     const now = friction[frame];
-    const largest = `the most in this motion is ${told(most(friction))}`;
+    const largest = `the most in this motion is ${formatNumber(most(friction))}`;
     remarks.push(
       now === null ? `The contact would have to pull at this instant, and no friction coefficient is sufficient; otherwise ${largest}.`
-      : `Rolling requires a friction coefficient of ${told(now)} at this instant; ${largest}.`,
+      : `Rolling requires a friction coefficient of ${formatNumber(now)} at this instant; ${largest}.`,
     );
   }
   return remarks.join(" ");

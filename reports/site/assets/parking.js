@@ -1,7 +1,7 @@
 // @ts-check
 /** A skate that the reader turns and slides by hand to a place straight sideways, and the commutator of both moves. */
 
-import { ARROWS, onDrag, placed, pointerIn, put } from "./motion.js";
+import { ARROWS, onDrag, pathThrough, placed, pointerIn, put } from "./motion.js";
 import { beginAll, remembered } from "./widget.js";
 
 /** @typedef {[number, number, number]} Pose x, y [m] and angle [rad] of the blade
@@ -74,7 +74,7 @@ function begin(place) {
 
   function show() {
     put(find(".skate"), ...pose);
-    find(".track").setAttribute("d", `M${track.map(([x, y]) => `${x.toFixed(4)} ${y.toFixed(4)}`).join("L")}`);
+    find(".track").setAttribute("d", pathThrough(track.map(([x, y]) => [x, y]), 4));
     const parked = Math.hypot(pose[0], pose[1] - GOAL) < NEAR.place && Math.abs(pose[2]) < NEAR.angle;
     const total = (/** @type {(move: Move) => number} */ of) => moves.reduce((sum, move) => sum + Math.abs(of(move)), 0);
     const turn = moves.find((move) => move.turn)?.turn ?? 0;
@@ -115,7 +115,6 @@ function begin(place) {
   });
   // A dragged nose follows the pointer: its motion along the blade slides the skate, its motion across turns the skate.
   onDrag(drawing, {
-    begin() {},
     move(event) {
       const [x, y] = pointerIn(drawing.firstElementChild, event);
       const [ahead, across] = placed([0, 0, -pose[2]], [x - pose[0], y - pose[1]]);

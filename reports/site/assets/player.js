@@ -3,19 +3,15 @@
 
 import { errorChart, svg } from "./chart.js";
 import { Lens } from "./lens.js";
-import { ARROWS, UNITS, onDrag, placed, pointerIn, poseAt, put, told } from "./motion.js";
+import { ARROWS, UNITS, distance, onDrag, pathThrough, placed, pointerIn, poseAt, put, formatNumber } from "./motion.js";
 import { OVERLAYS } from "./overlays.js";
 
 /** @typedef {import("./motion.js").Take} Take */
 
 /** Return the path of a body's point. @param {ArrayLike<number>} pose @param {number} bodies @param {number} body @param {number[]} point */
 function pathOf(pose, bodies, body, point) {
-  let path = "";
-  for (let at = 3 * body; at < pose.length; at += 3 * bodies) {
-    const [x, y] = placed([pose[at], pose[at + 1], pose[at + 2]], point);
-    if (Number.isFinite(x + y)) path += `${path ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}`;
-  }
-  return path;
+  const points = Array.from({ length: pose.length / (3 * bodies) }, (_, frame) => placed(poseAt(pose, bodies, frame, body), point));
+  return pathThrough(points.filter(([x, y]) => Number.isFinite(x + y)), 4);
 }
 
 export class Player {
@@ -59,21 +55,14 @@ export class Player {
     this.groups = [...this.stage.querySelectorAll(".motion")].map((group) => [...group.querySelectorAll(".body")]);
     [this.time.min, this.time.max] = take.window.map(String);
     this.frame = Math.min(Math.max(this.frame, take.window[0]), take.window[1]);
+    const { enlarged } = take.playback;
     for (const box of this.boxes) {
-      if (box.value === "enlarged") continue;
-      const there = box.value === "paths" ? take.traces.length > 0 : OVERLAYS[box.value].there(take);
-      box.disabled = !there;
-      const row = box.closest("label");
-      if (row) row.hidden = !there;
+      const there = box.value === "enlarged" ? enlarged > 1 : box.value === "paths" ? take.traces.length > 0 : OVERLAYS[box.value].there(take);
+      const label = /** @type {HTMLElement} */ (box.closest("label"));
+      box.disabled = label.hidden = !there;
+      label.querySelector("span")?.replaceChildren(String(enlarged)); // only the label of "enlarged" has a number
     }
     this.lens.take = null; // loaded by its own task
-    const { enlarged } = take.playback;
-    for (const box of this.boxes.filter(({ value }) => value === "enlarged")) {
-      box.disabled = enlarged === 1;
-      const label = /** @type {HTMLElement} */ (box.closest("label"));
-      label.hidden = box.disabled;
-      /** @type {HTMLElement} */ (label.querySelector("span")).textContent = String(enlarged);
-    }
     this.draw();
   }
 
@@ -97,7 +86,7 @@ export class Player {
     this.mark = errorChart(this.chart, t, motions, measure);
     for (const { mark, error } of motions) {
       const place = this.figure.querySelector(`.legend .method-${mark} .figure`);
-      if (place) place.textContent = `up to ${told(error)} ${UNITS[measure]}`;
+      if (place) place.textContent = `up to ${formatNumber(error)} ${UNITS[measure]}`;
     }
   }
 
@@ -164,7 +153,7 @@ export class Player {
   /** Return the frame near the shown one at which a body's point is nearest to the pointer. @param {Take} take @param {number} body @param {number[]} point @param {number[]} wanted */
   nearest({ window: [first, last], exact, bodies }, body, point, wanted) {
     const reach = Math.ceil((last - first) / 10); // a motion may return to a place, so distant frames do not count
-    const away = (/** @type {number} */ frame) => Math.hypot(...placed(poseAt(exact.pose, bodies.length, frame, body), point).map((value, axis) => value - wanted[axis]));
+    const away = (/** @type {number} */ frame) => distance(poseAt(exact.pose, bodies.length, frame, body), point, wanted);
     let best = this.frame;
     for (let frame = Math.max(first, this.frame - reach); frame <= Math.min(last, this.frame + reach); frame++) if (away(frame) < away(best)) best = frame;
     return best;
@@ -173,7 +162,7 @@ export class Player {
   /** Let the reader drag a linkage anywhere, and another mechanism along its motion; `pull` gets the body, its point and the position of the pointer.
    * @param {(body: number, point: number[], wanted: number[]) => Float64Array|null} pull @param {() => void} release */
   grabbed(pull, release) {
-    const frame_ = /** @type {HTMLElement} */ (this.figure.querySelector(".frame"));
+    const place = /** @type {HTMLElement} */ (this.figure.querySelector(".frame"));
     /** @type {{body: number, point: number[]}|null} */
     let held = null;
     const hand = (/** @type {PointerEvent} */ event) => pointerIn(this.stage.querySelector(".world"), event);
@@ -183,7 +172,7 @@ export class Player {
       const wanted = hand(event);
       const near = take.bodies.map((_, body) => poseAt(take.exact.pose, take.bodies.length, this.frame, body)).flatMap((pose, body) => {
         const own = take.joints.flatMap(({ first, second, firstPoint, secondPoint }) => [...(first === body ? [firstPoint] : []), ...(second === body ? [secondPoint] : [])]);
-        return [[0, 0], ...own].map((point) => ({ body, point, away: Math.hypot(...placed(pose, point).map((value, axis) => value - wanted[axis])) }));
+        return [[0, 0], ...own].map((point) => ({ body, point, away: distance(pose, point, wanted) }));
       }).sort((a, b) => a.away - b.away)[0];
       if (take.mechanism ? near.away > 0.15 * take.size || !pull(near.body, near.point, wanted) : near.away > take.size) return false;
       if (!take.mechanism) { // the point of the body at the pointer
@@ -207,7 +196,7 @@ export class Player {
       }
       this.stage.querySelector(".overlay")?.replaceChildren();
     };
-    frame_.addEventListener("keydown", (event) => {
+    place.addEventListener("keydown", (event) => {
       const by = ARROWS[event.key];
       const { take } = this;
       if (!take?.mechanism || !by) return;
@@ -223,7 +212,7 @@ export class Player {
       if (held && this.take?.mechanism) release();
       held = pose = null;
     };
-    onDrag(frame_, { begin: press, move: (event) => held && follow(held, hand(event)), end });
-    frame_.addEventListener("keyup", end);
+    onDrag(place, { begin: press, move: (event) => held && follow(held, hand(event)), end });
+    place.addEventListener("keyup", end);
   }
 }

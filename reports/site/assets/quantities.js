@@ -1,7 +1,7 @@
 // @ts-check
 /** Numbers of a motion that a lesson shows beside its errors; reports/site/lesson.py describes them. */
 
-import { ends, grouped, instantCentre, poseAt, told, UNITS } from "./motion.js";
+import { ends, grouped, instantCentre, poseAt, formatNumber, UNITS } from "./motion.js";
 
 /** @typedef {{kind: "gap"|"rates"|"bend"|"centre"|"contact"|"energy"|"friction", words: string, bodies: number[]}} Quantity
  * @typedef {{pose: ArrayLike<number>, twist: ArrayLike<number>}} States
@@ -66,16 +66,18 @@ const QUANTITY_UNITS = { gap: "m", rates: "rad/s", bend: "s", centre: "m", conta
 /** Return a quantity as text. @param {Quantity["kind"]} kind @param {Found|undefined} found */
 function worded(kind, found) {
   if (!found) return kind === "bend" ? "never" : "–";
-  return `${found.map(told).join(" to ")} ${QUANTITY_UNITS[kind]}`;
+  return `${found.map(formatNumber).join(" to ")} ${QUANTITY_UNITS[kind]}`;
 }
+
+/** @param {any} answer @param {string} name @returns {number|undefined} */
+const errorOf = (answer, name) => answer?.motions.find((/** @type {any} */ each) => each.name === name)?.error;
 
 /** Return the error and the quantities of one motion, compared with those before. @param {string} name @param {any} answer @param {any} before */
 export function cell(name, answer, before) {
   const unit = UNITS[/** @type {"angle"|"position"} */ (answer.measure)];
-  const error = answer.motions.find((/** @type {any} */ one) => one.name === name)?.error;
-  const old = before?.motions.find((/** @type {any} */ one) => one.name === name)?.error;
+  const [error, old] = [answer, before].map((each) => errorOf(each, name));
   const missing = name === "exact" ? [] : [name in answer.lost ? "cannot be run here" : "–"];
-  const errors = error === undefined ? missing : [`${told(error)}${Number.isFinite(error) ? ` ${unit}` : ""}${ratio(error, old)}`];
+  const errors = error === undefined ? missing : [`${formatNumber(error)}${Number.isFinite(error) ? ` ${unit}` : ""}${ratio(error, old)}`];
   const numbers = answer.quantities.filter((/** @type {any} */ each) => each.found[name] !== undefined && (each.found[name] || each.kind === "bend"));
   return [...errors, ...numbers.map((/** @type {any} */ each) => `${each.words} ${worded(each.kind, each.found[name])}`)].join("; ");
 }
@@ -93,6 +95,6 @@ export function expected(name, times, before, of) {
   if (times === undefined) return "";
   const quantity = before.quantities.find((/** @type {any} */ { kind }) => kind === of);
   if (quantity) return `${quantity.words} ${worded(quantity.kind, quantity.found[name]?.map((/** @type {number} */ value) => value * times))}`;
-  const old = before.motions.find((/** @type {any} */ one) => one.name === name)?.error;
-  return old === undefined ? "" : `about ${told(old * times)} ${UNITS[/** @type {"angle"|"position"} */ (before.measure)]}`;
+  const old = errorOf(before, name);
+  return old === undefined ? "" : `about ${formatNumber(old * times)} ${UNITS[/** @type {"angle"|"position"} */ (before.measure)]}`;
 }

@@ -110,10 +110,10 @@ function keep() {
 }
 
 async function begin() {
-  const told = await (await fetch("rows.json")).json();
-  ({ looks, headings } = told);
+  const stored = await (await fetch("rows.json")).json();
+  ({ looks, headings } = stored);
   /** @type {Row[]} */
-  const rows = told.rows.map((/** @type {unknown[]} */ row) => Object.fromEntries(told.columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])));
+  const rows = stored.rows.map((/** @type {unknown[]} */ row) => Object.fromEntries(stored.columns.map((/** @type {string} */ name, /** @type {number} */ i) => [name, row[i]])));
   for (const name of ["scene", "engine"]) field(name).append(...[...new Set(rows.map((row) => String(row[name])))].sort().map((word) => new Option(word)));
   field("engine").prepend(new Option("all", "", true, true));
   field("scene").value = "free_four_bar";

@@ -8,11 +8,11 @@ import { playback } from "./playback.js";
 import { measured } from "./quantities.js";
 
 /** @typedef {import("./live_data.js").Setting} Setting @typedef {import("./live_data.js").Name} Name
- * @typedef {import("./live_data.js").Scene} Scene */
+ * @typedef {import("./live_data.js").Scene} Scene @typedef {Awaited<ReturnType<typeof load>>} Engines */
 
 /** @type {Map<string, Promise<Scene>>} */
 const scenes = new Map();
-/** @type {Promise<{mujoco: any, munk: any, why: Record<string, string>}>|null} */
+/** @type {Promise<Engines>|null} */
 let loading = null;
 let folder = "";
 
@@ -33,7 +33,7 @@ async function sceneOf(key) {
   return known;
 }
 
-/** Return the motions, drawing, errors and quantities for a setting. @param {Setting} setting @param {{mujoco: any, munk: any, why: Record<string, string>}} engines
+/** Return the motions, drawing, errors and quantities for a setting. @param {Setting} setting @param {Engines} engines
  * @param {import("./quantities.js").Quantity[]} quantities */
 async function answer(setting, engines, quantities) {
   const scene = await sceneOf(setting.key);
@@ -92,7 +92,7 @@ async function answer(setting, engines, quantities) {
 /** Return velocities and impulses after each iteration of one step of Munk2D; `which`: index of each joint's impulse.
  * @param {Setting} setting @param {number} frame */
 async function sweeps(setting, frame) {
-  const { munk } = await /** @type {Promise<{mujoco: any, munk: any, why: Record<string, string>}>} */ (loading);
+  const { munk } = await /** @type {Promise<Engines>} */ (loading);
   const scene = await sceneOf(setting.key);
   const run = runOf(setting, scene);
   const before = frame * run.every - 1; // steps
@@ -113,10 +113,10 @@ onmessage = async ({ data: { id, kind, setting, frame, quantities, packages, wan
       folder = where;
       loading = load(packages, wanted);
       await loading;
-      postMessage({ id, told: {} });
-    } else if (kind === "check") postMessage({ id, told: missed(runOf(setting, await sceneOf(setting.key))) });
-    else if (kind === "sweeps") postMessage({ id, told: await sweeps(setting, frame) });
-    else postMessage({ id, told: await answer(setting, await /** @type {Promise<any>} */ (loading), quantities ?? []) });
+      postMessage({ id, result: {} });
+    } else if (kind === "check") postMessage({ id, result: missed(runOf(setting, await sceneOf(setting.key))) });
+    else if (kind === "sweeps") postMessage({ id, result: await sweeps(setting, frame) });
+    else postMessage({ id, result: await answer(setting, await /** @type {Promise<any>} */ (loading), quantities ?? []) });
   } catch (reason) {
     postMessage({ id, why: reason instanceof Error ? reason.message : String(reason) });
   }
