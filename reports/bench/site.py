@@ -116,10 +116,10 @@ def _measure_first_picture(browser: Any, address: str) -> float:
     tools.send("Network.emulateNetworkConditions", NETWORK)
     tools.send("Emulation.setCPUThrottlingRate", {"rate": SLOWED})
     page.add_init_script(PICTURED)
-    with page.expect_console_message(lambda message: message.text.startswith("pictured ")) as told:
+    with page.expect_console_message(lambda message: message.text.startswith("pictured ")) as message:
         page.goto(address, wait_until="commit")
     context.close()
-    return float(told.value.text.split()[1])
+    return float(message.value.text.split()[1])
 
 
 def _measure_longest_task(browser: Any, address: str) -> float:

@@ -24,7 +24,7 @@ from reference.scenes.rolling.scenes import RollingDisc, RollingEllipse
 from reference.scenes.skates import ChaplyginSleigh
 from reference.scenes.slider_crank import DrivenSliderCrank
 from reports.site.build import DRAGGED
-from reports.site.drawn import place_of, required_friction
+from reports.site.drawn import between, place_of, required_friction
 from reports.site.lessons import LESSONS
 from reports.site.live import sliders
 from reports.site.live.data import data as live_data
@@ -142,6 +142,20 @@ def test_a_live_scene_has_the_exact_motion_at_every_position_of_its_sliders():
     assert loaded["native"]["munk"] == [None] * len(live.munk)
     assert loaded["munk"][0]["why"] == "pymunk as shipped has no joint for a skate"
     assert loaded["measure"] == "position"
+
+
+@pytest.mark.parametrize("name", ["pendulum: one link", "four_bar: two assemblies"])
+def test_the_picture_contains_the_exact_motion_at_every_position_of_the_sliders(name):
+    live = LIVE[name]
+    places = live_data(live, {})["places"]
+    for place, scene in zip(places, live.places(), strict=True):
+        left, top, width, height = map(float, place["drawing"]["box"].split())  # the y axis of the box points down
+        pose = scene.motion(np.linspace(0.0, scene.duration, live.frames + 1)).pose
+        ends = [pose[..., :2]]
+        ends += [place_of(joint, *between(scene.mechanism(), joint, pose)) for joint in scene.mechanism().joints]
+        for points in ends:
+            assert np.abs(points[..., 0] - left - width / 2).max() < width / 2
+            assert np.abs(points[..., 1] + top + height / 2).max() < height / 2
 
 
 @pytest.mark.parametrize(

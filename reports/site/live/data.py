@@ -64,7 +64,7 @@ def data(live: Live, answers: Mapping[Motion, Answer]) -> dict[str, Any]:
 def _place(live: Live, scene: Scene, mechanism: Mechanism) -> dict[str, Any]:
     pinned = all(isinstance(joint, Pin | Slot | Drive) for joint in mechanism.joints)
     has_motion = not pinned or scene == live.scene
-    truth = (scene if has_motion else live.scene).motion(np.arange(live.frames + 1) * (scene.duration / live.frames))
+    truth = scene.motion(np.arange(live.frames + 1) * (scene.duration / live.frames))
     blades = [joint for joint in mechanism.joints if isinstance(joint, Skate)]
     traces = live.traces or [(str(blade.second), blade.second_point) for blade in blades]
     return {
