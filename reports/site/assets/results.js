@@ -37,6 +37,9 @@ function draw(rows) {
     .filter((row) => Number(row[x]) > 0 && Number(row[y]) > 0)
     .map((row) => ({ ...row, method: nameOf(row) }));
   const engines = [...new Set(points.map((row) => String(row.engine)))];
+  const names = (/** @type {boolean} */ ofDefaults, /** @type {(options: object) => object} */ select, /** @type {string} */ textAnchor, /** @type {number} */ dx) =>
+    Plot.text(points.filter(({ variant }) => (variant === "default") === ofDefaults),
+      select({ x, y, z: "method", text: "method", fill: "engine", stroke: "var(--paper)", textAnchor, dx, dy: -7 }));
   const [across, error] = ["x", "y"].map((name) => field(name).selectedOptions[0].text);
   chart.replaceChildren(
     points.length
@@ -50,8 +53,8 @@ function draw(rows) {
             ...[...new Set(points.map((row) => String(row.variant)))].map((variant) =>
               Plot.line(points.filter((row) => row.variant === variant), { x, y, z: "method", stroke: "engine", sort: x, strokeDasharray: DASHES[variant] ?? "1 2 6 2" })),
             // Default methods have nearly equal errors at short steps, other methods at long steps. Labels are at the other end.
-            Plot.text(points.filter(({ variant }) => variant !== "default"), Plot.selectMinX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "start", dx: 6, dy: -7 })),
-            Plot.text(points.filter(({ variant }) => variant === "default"), Plot.selectMaxX({ x, y, z: "method", text: "method", fill: "engine", textAnchor: "end", dx: -6, dy: -7 })),
+            names(false, Plot.selectMinX, "start", 6),
+            names(true, Plot.selectMaxX, "end", -6),
             Plot.dot(points, {
               x, y, fill: "engine", tip: true, r: 3.5,
               channels: {
