@@ -17,7 +17,7 @@ from reference.mechanism import Mechanism
 from reference.plane import rotated
 from reference.scene import Scene
 from reference.trajectory import body_points, ground_points
-from reports.plots.theme import LIGHT, bare, drawing
+from reports.plots.theme import LIGHT, add_legend, bare, drawing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -85,7 +85,7 @@ def configurations(
         labels = {name: name if name in drawn else f"{name}: no visible error" for name in others}
         handles = [Line2D([], [], color=LIGHT.ink, linewidth=2.2, label="exact")]
         handles += [Line2D([], [], label=labels[name], **look) for name, look in looks.items()]
-        figure.legend(handles=handles, loc="outside lower center", ncols=3)
+        add_legend(figure, handles, 3)
     return figure
 
 

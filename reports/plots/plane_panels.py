@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reports.plots.theme import FIGURE_WIDTH, LIGHT, drawing, style_axes
+from reports.plots.theme import FIGURE_WIDTH, LIGHT, add_legend, drawing, style_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -106,7 +106,7 @@ def paths(panels: Sequence[Panel], columns: int = 3, height: float | None = None
         for spare in axes.ravel()[len(panels) :]:
             spare.set_visible(False)
         if handles:
-            figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=3, handlelength=3.2)
+            add_legend(figure, list(handles.values()), 3, handlelength=3.2)
     return figure
 
 

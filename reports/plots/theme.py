@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 FIGURE_WIDTH = 9.2  # inches; GitHub does not scale pictures of this width
 
@@ -116,6 +117,14 @@ def drawing(height: float, width: float = FIGURE_WIDTH) -> Iterator[Figure]:
 def note(panel: Axes, text: str, point: ArrayLike, offset: tuple[float, float], color: str, **style: Any) -> None:
     """Write a text at an offset [1/72 inch] from a data point."""
     panel.annotate(text, point, xytext=offset, textcoords="offset points", color=color, **style)  # type: ignore[arg-type]
+
+
+def add_legend(figure: Figure, handles: Sequence[Line2D], columns: int, **style: Any) -> None:
+    """Write a legend below the panels, in the largest number of columns, at most `columns`, that fits the figure."""
+    legend = figure.legend(handles=handles, loc="outside lower center", ncols=columns, **style)
+    if columns > 1 and legend.get_window_extent().width > figure.bbox.width:
+        legend.remove()
+        add_legend(figure, handles, columns - 1, **style)
 
 
 def style_axes(axes: Axes, theme: Theme = LIGHT, grid: bool = True) -> None:

@@ -15,7 +15,7 @@ from reports.model.measure import Measurement
 from reports.model.outcomes import Outcome
 from reports.model.quantities import quantity
 from reports.plots.looks import colour, family_of, look, mark
-from reports.plots.theme import LIGHT, drawing, new_figure, note, settings, style_axes
+from reports.plots.theme import LIGHT, add_legend, drawing, new_figure, note, settings, style_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 PANEL_COLUMNS = 2
-LONGEST_OF_FOUR = 30  # letters; a line of the legend is too short for four longer names
 SLOPES = (1, 2, 4)
 FAN_POSITIONS = 25
 
@@ -100,12 +99,6 @@ def _finish(panel: Axes) -> None:
     panel.minorticks_off()
 
 
-def _legend(figure: Figure, handles: Sequence[Line2D]) -> None:
-    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
-    columns = 4 if longest <= LONGEST_OF_FOUR else 3
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, handlelength=3.2)
-
-
 Pairs = list[tuple[float, float]]
 
 
@@ -153,7 +146,7 @@ def work_precision(rows: Iterable[Measurement], featured: Featured = lambda row:
         handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, label="least error within a CPU time"))
         if len(shown) < len(rows):
             handles.append(Line2D([], [], color=LIGHT.quiet, marker=".", linestyle="none", label="other methods"))
-        _legend(figure, handles)
+        add_legend(figure, handles, 4, handlelength=3.2)
     return figure
 
 
@@ -175,7 +168,7 @@ def error_against_step(
             _guides(panel)
             _finish(panel)
         handles.append(Line2D([], [], color=LIGHT.grid, linewidth=8, alpha=0.6, label="rounding"))
-        _legend(figure, handles)
+        add_legend(figure, handles, 4, handlelength=3.2)
     return figure
 
 
@@ -271,7 +264,7 @@ def engines_compared(rows: Sequence[ComparedRow]) -> Figure:
         for panel in grid.ravel():
             panel.minorticks_off()
         handles = [Line2D([], [], label=ENGINE_NAMES.get(name, name), **_look_of(name, engines)) for name in engines]
-        figure.legend(handles=handles, loc="outside lower center", ncols=4, handlelength=3)
+        add_legend(figure, handles, 4, handlelength=3)
     return figure
 
 

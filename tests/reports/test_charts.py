@@ -25,7 +25,7 @@ from reports.plots import looks as families
 from reports.plots import mechanisms as drawings
 from reports.plots import work_precision as charts
 from reports.plots.plane_panels import Blades, Panel, PanelNote, Path, paths
-from reports.plots.theme import LIGHT
+from reports.plots.theme import LIGHT, add_legend, drawing
 from tests.mechanisms import four_bar
 from tests.rows import falling, row_of
 
@@ -197,3 +197,12 @@ def test_the_band_ends_at_rounding_and_guides_have_their_slopes():
         assert math.log(top / bottom) / math.log(right / left_end) == pytest.approx(float(text.get_text()))
         assert text.xy == (pytest.approx(right), pytest.approx(top))
     assert panel.get_ylim()[0] == pytest.approx(1e-5 / 3)
+
+
+@pytest.mark.parametrize(("letters", "columns"), [(10, 3), (30, 2), (60, 1), (300, 1)])
+def test_a_legend_has_as_many_columns_as_fit_the_figure(letters, columns):
+    with drawing(4.0) as figure:
+        add_legend(figure, [Line2D([], [], label="m" * letters) for _ in range(4)], 3)
+    (legend,) = figure.legends
+    assert legend._ncols == columns  # pyright: ignore[reportAttributeAccessIssue] (matplotlib has no public name)
+    assert letters == 300 or legend.get_window_extent().width <= figure.bbox.width

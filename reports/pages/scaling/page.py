@@ -23,7 +23,7 @@ from reports.model.page import Material, Page
 from reports.model.tasks import Task, Values
 from reports.pages.pendulum import page as pendulum
 from reports.plots.looks import look
-from reports.plots.theme import LIGHT, drawing, label_decades, style_axes, svg
+from reports.plots.theme import LIGHT, add_legend, drawing, label_decades, style_axes, svg
 from reports.write.tables import DASH, markdown, number
 from reports.write.unmeasured import UNMEASURED
 
@@ -136,7 +136,7 @@ def scaling_chart(all_series: Sequence[MethodSeries]) -> Figure:
             label_decades(panel.yaxis, 16)
             panel.minorticks_off()
         handles = [Line2D([], [], label=series.method, **looks[series.method]) for series in all_series]
-        figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=3.2)
+        add_legend(figure, handles, 3, handlelength=3.2)
     return figure
 
 

@@ -24,7 +24,7 @@ from reports.pages.speed.table import (
     read,
 )
 from reports.plots.looks import colour, mark
-from reports.plots.theme import LIGHT, drawing, label_decades, style_axes, svg
+from reports.plots.theme import LIGHT, add_legend, drawing, label_decades, style_axes, svg
 from reports.write.tables import markdown, number
 
 if TYPE_CHECKING:
@@ -160,7 +160,7 @@ def ratio_chart(table: SpeedTable) -> Figure:
             for engine in table.engines
         ]
         handles.append(Line2D([], [], linestyle="-", color=LIGHT.quiet, marker=">", markersize=4, label="or more"))
-        figure.legend(handles=handles, loc="outside lower center", ncols=4)
+        add_legend(figure, handles, 4)
     return figure
 
 
