@@ -39,7 +39,7 @@ function draw(rows) {
   const engines = [...new Set(points.map((row) => String(row.engine)))];
   const names = (/** @type {boolean} */ ofDefaults, /** @type {(options: object) => object} */ select, /** @type {string} */ textAnchor, /** @type {number} */ dx) =>
     Plot.text(points.filter(({ variant }) => (variant === "default") === ofDefaults),
-      select({ x, y, z: "method", text: "method", fill: "engine", stroke: "var(--paper)", textAnchor, dx, dy: -7 }));
+      select({ x, y, z: "method", text: "method", fill: "engine", textAnchor, dx, dy: -7 }));
   const [across, error] = ["x", "y"].map((name) => field(name).selectedOptions[0].text);
   chart.replaceChildren(
     points.length
