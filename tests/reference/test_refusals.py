@@ -57,7 +57,7 @@ REFUSED: dict[str, tuple[Any, str]] = {
     "a joint of one body": (lambda: hung(Pin("A", "b", "b", (0, 0), (0, 0))), "with itself"),
     "an open pin": (lambda: hung(Pin("A", None, "b", (0.1, 0), (-0.5, 0))), "'A x' is open by 0.1"),
     "a pose without the direction of a rod": (
-        lambda: hung(Rod("R", None, "b", (0, 0), (0.5, 0), 1.0)).degrees_of_freedom([[-0.5, 0, 0]]),
+        lambda: hung(Rod("R", None, "b", (0, 0), (0.5, 0), 1.0)).degrees_of_freedom(np.array([[-0.5, 0.0, 0.0]])),
         "the row 'R.*' is not finite at this pose",
     ),
     "a rate that no drive has": (lambda: four_bar(crank_rate=10.0, drive=9.0), "'drive torque' is moving apart at 1"),
